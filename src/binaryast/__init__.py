@@ -1,0 +1,92 @@
+"""Rigid bodies under mutual gravity: the full two-body problem, integrated on SE(3).
+
+Everything public is here; what needs compiled code, plots or files is imported when it is first used.
+"""
+
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from binaryast import analysis, catalogue, constants, errors, plotting, scenario
+    from binaryast.bodies import RigidBody
+    from binaryast.errors import BinaryastError
+    from binaryast.gravity import PairPotential, PointMass, PointPairs, SecondDegree
+    from binaryast.integrators import LGVI
+    from binaryast.kernels.jit import pair_potential
+    from binaryast.propagation import propagate
+    from binaryast.shapes import Dumbbell, Ellipsoid, PointCloud, Shape, Sphere
+    from binaryast.state import RelativeState, State
+    from binaryast.system import MutualGravity, System
+    from binaryast.trajectory import Trajectory
+
+try:
+    __version__ = version("binaryast")
+except PackageNotFoundError:  # running from a bare source tree
+    __version__ = "0+unknown"
+
+_HOMES = {
+    "BinaryastError": "errors",
+    "Dumbbell": "shapes",
+    "Ellipsoid": "shapes",
+    "LGVI": "integrators",
+    "MutualGravity": "system",
+    "PairPotential": "gravity",
+    "PointCloud": "shapes",
+    "PointMass": "gravity",
+    "PointPairs": "gravity",
+    "RelativeState": "state",
+    "RigidBody": "bodies",
+    "SecondDegree": "gravity",
+    "Shape": "shapes",
+    "Sphere": "shapes",
+    "State": "state",
+    "System": "system",
+    "Trajectory": "trajectory",
+    "pair_potential": "kernels.jit",
+    "propagate": "propagation",
+}
+_MODULES = ("analysis", "catalogue", "constants", "errors", "plotting", "scenario")
+
+__all__ = [
+    "LGVI",
+    "BinaryastError",
+    "Dumbbell",
+    "Ellipsoid",
+    "MutualGravity",
+    "PairPotential",
+    "PointCloud",
+    "PointMass",
+    "PointPairs",
+    "RelativeState",
+    "RigidBody",
+    "SecondDegree",
+    "Shape",
+    "Sphere",
+    "State",
+    "System",
+    "Trajectory",
+    "__version__",
+    "analysis",
+    "catalogue",
+    "constants",
+    "errors",
+    "pair_potential",
+    "plotting",
+    "propagate",
+    "scenario",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name in _MODULES:
+        return import_module(f"binaryast.{name}")
+    if name in _HOMES:
+        value = getattr(import_module(f"binaryast.{_HOMES[name]}"), name)
+        globals()[name] = value
+        return value
+    raise AttributeError(f"module 'binaryast' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

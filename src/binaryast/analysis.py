@@ -1,0 +1,135 @@
+"""What is read off a trajectory: the mutual period, the libration of the secondary."""
+
+import numpy as np
+from astropy.units import Quantity
+
+from binaryast.errors import InputError
+from binaryast.trajectory import Trajectory
+from binaryast.units import Floats, quantity
+
+
+def orbit_angle(run: Trajectory) -> Quantity:
+    """Return the angle that the secondary has gone round the primary since the start, in the mean orbit plane.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Of a pair; a row at least every half turn.
+
+    Returns
+    -------
+    Quantity
+        (N,) [rad], growing.
+
+    Raises
+    ------
+    InputError
+        For a run of fewer than two rows, or without a turn about any axis.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> system, state = ba.catalogue.load("patroclus")
+    >>> run = ba.propagate(system, state, duration=4.283 * u.day, integrator=ba.LGVI(20 * u.min))
+    >>> print(ba.analysis.orbit_angle(run)[-1].to("deg").round(2))
+    360.0 deg
+    """
+    x, _ = _relative(run)
+    first, second, _ = mean_orbit_axes(run)
+    angle = np.unwrap(np.arctan2(x @ second, x @ first))
+    return quantity(angle - angle[0], "rad")
+
+
+def mean_orbit_axes(run: Trajectory) -> Floats:
+    """Return inertial unit vectors (3, 3): two in the mean orbit plane, the first along the start, and its pole."""
+    x, v = _relative(run)
+    if len(x) < 2:
+        raise InputError(f"the run has {len(x)} row: expected at least 2")
+    pole = np.cross(x, v).mean(axis=0)
+    length = np.linalg.norm(pole)
+    if not length > 1e-12 * np.linalg.norm(x[0]) * np.linalg.norm(v[0]):
+        raise InputError("the pair moves on a line: there is no orbit plane")
+    pole = pole / length
+    first = x[0] - (x[0] @ pole) * pole
+    first /= np.linalg.norm(first)
+    return np.array([first, np.cross(pole, first), pole])
+
+
+def mutual_period(run: Trajectory) -> Quantity:
+    """Return the mean sidereal period of the mutual orbit.
+
+    It is the slope of a straight line through the angle, so oscillations within an orbit average out.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Of a pair, over at least one turn, with at least four rows a turn.
+
+    Returns
+    -------
+    Quantity
+        [h]
+
+    Raises
+    ------
+    InputError
+        For less than one turn, or too few rows.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> system, state = ba.catalogue.load("didymos")
+    >>> run = ba.propagate(system, state, duration=20 * u.day, integrator=ba.LGVI(step=40 * u.s))
+    >>> print(ba.analysis.mutual_period(run).round(2))
+    11.92 h
+    """
+    angle = orbit_angle(run).value
+    turns = angle[-1] / (2 * np.pi)
+    if turns < 1:
+        raise InputError(f"mutual_period: the run covers {turns:.3g} turns: expected at least one")
+    if np.abs(np.diff(angle)).max() > np.pi / 2:
+        raise InputError("mutual_period: fewer than four rows a turn: save more often")
+    slope = np.polynomial.Polynomial.fit(run.si.time, angle, 1).convert().coef[1]
+    return quantity(2 * np.pi / slope, "s").to("h")
+
+
+def libration_angle(run: Trajectory) -> Quantity:
+    """Return the angle from the line of centres to the secondary's x axis, in the orbit plane of each moment.
+
+    It starts near zero for a synchronous secondary, oscillates while that librates, and grows when it turns freely.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Of a pair; a row at least every half turn of the secondary against the line of centres.
+
+    Returns
+    -------
+    Quantity
+        (N,) [rad], without jumps.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> system, state = ba.catalogue.load("didymos")
+    >>> run = ba.propagate(system, state, duration=2 * u.day, integrator=ba.LGVI(step=40 * u.s))
+    >>> bool(abs(ba.analysis.libration_angle(run)).max().to_value("deg") < 1)
+    True
+    """
+    x, v = _relative(run)
+    along = x / np.linalg.norm(x, axis=1, keepdims=True)
+    pole = np.cross(x, v)
+    length = np.linalg.norm(pole, axis=1, keepdims=True)
+    if not np.all(length > 0):
+        raise InputError("the pair moves on a line: there is no orbit plane")
+    across = np.cross(pole / length, along)
+    axis = run.si.attitude[:, 1, :, 0]
+    return quantity(np.unwrap(np.arctan2(np.sum(axis * across, axis=1), np.sum(axis * along, axis=1))), "rad")
+
+
+def _relative(run: Trajectory) -> tuple[Floats, Floats]:
+    """Return position and velocity of the secondary relative to the primary, inertial."""
+    return run.si.position[:, 1] - run.si.position[:, 0], run.si.velocity[:, 1] - run.si.velocity[:, 0]

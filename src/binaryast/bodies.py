@@ -1,0 +1,224 @@
+"""Rigid bodies: a shape with mass, brought to its mass centre and principal axes."""
+
+from dataclasses import dataclass, field
+from itertools import permutations, product
+from typing import Any, NamedTuple
+
+import numpy as np
+from astropy.units import Quantity
+
+from binaryast.constants import G
+from binaryast.errors import InputError
+from binaryast.shapes import Shape
+from binaryast.units import Floats, checked, quantity, to_si
+from binaryast.values import Value
+
+EQUAL_MOMENTS = 1e-12  # relative difference below which two principal axes may be chosen freely
+
+
+class BodyFloats(NamedTuple):
+    """A body as plain SI floats."""
+
+    mass: float
+    gm: float
+    moments: Floats
+
+
+@dataclass(frozen=True, eq=False, init=False)
+class RigidBody(Value):
+    """A rigid body. Its frame has the mass centre as origin and the principal axes nearest to the shape's own.
+
+    Axes are never sorted by size: an ellipsoid's x stays x.
+
+    Parameters
+    ----------
+    name : str
+        A name, unique in a system.
+    shape : Shape
+        Its geometry.
+    mass, density, gm : Quantity
+        Exactly one of the three: mass, bulk density, or G times mass.
+    inertia : Quantity, optional
+        Overrides the shape's: three principal moments about the shape's axes, or the inertia matrix (3, 3) about the
+        mass centre in the shape's frame.
+
+    Attributes
+    ----------
+    inertia : Quantity
+        Principal moments (3,) about the axes of the body frame [kg m2].
+    turn : ndarray
+        Rotation matrix (3, 3), body frame -> shape's frame.
+    offset : Quantity
+        Mass centre (3,) in the shape's frame [m]; a point p of the body frame is offset + turn p in the shape's.
+    si : BodyFloats
+        mass [kg], gm [m3/s2] and principal moments [kg m2] as floats.
+
+    Raises
+    ------
+    InputError
+        For none or several of mass, density and gm; a shape without volume given a density; moments that no mass can
+        have: negative, zero, or one larger than the sum of the other two.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> body = ba.RigidBody("Dimorphos", ba.Ellipsoid(89.8 * u.m, 84.7 * u.m, 57.6 * u.m), mass=4.47e9 * u.kg)
+    >>> print(body.density.round(1))
+    2435.8 kg / m3
+    """
+
+    name: str
+    shape: Shape
+    mass: Quantity
+    density: Quantity | None
+    gm: Quantity
+    inertia: Quantity
+    turn: Floats = field(repr=False)
+    offset: Quantity = field(repr=False)
+    si: BodyFloats = field(repr=False)
+    given: dict[str, Quantity] = field(repr=False)
+
+    def __init__(
+        self,
+        name: str,
+        shape: Shape,
+        *,
+        mass: Quantity | None = None,
+        density: Quantity | None = None,
+        gm: Quantity | None = None,
+        inertia: Quantity | None = None,
+    ) -> None:
+        if not isinstance(name, str) or not name:
+            raise InputError(f"RigidBody: name: expected a text, got {name!r}")
+        if not isinstance(shape, Shape):
+            raise InputError(f"RigidBody {name}: shape: expected a shape such as ba.Ellipsoid(...), got {shape!r}")
+        given = {"mass": mass, "density": density, "gm": gm}
+        given = {key: value for key, value in given.items() if value is not None}
+        if len(given) != 1:
+            found = " and ".join(given) or "none"
+            raise InputError(f"RigidBody {name}: give exactly one of mass=, density= and gm=, got {found}")
+        self._set(name=name, shape=shape, given=given | ({} if inertia is None else {"inertia": inertia}))
+        mass_si, gm_si = self._masses(**given)
+        matrix = shape.specific_inertia * mass_si if inertia is None else self._given_inertia(inertia)
+        moments, turn = principal_axes(matrix, f"RigidBody {name}: inertia")
+        self._check_moments(moments)
+        self._set(
+            mass=quantity(mass_si, "kg"),
+            gm=quantity(gm_si, "m3 / s2"),
+            density=None if shape.volume is None else quantity(mass_si / shape.volume, "kg / m3"),
+            inertia=quantity(moments, "kg m2"),
+            turn=turn,
+            offset=quantity(shape.centre, "m"),
+            si=BodyFloats(mass_si, gm_si, moments),
+        )
+
+    def arguments(self) -> dict[str, Any]:
+        """Return the arguments that make this body again, as they were given."""
+        return {"name": self.name, "shape": self.shape, **self.given}
+
+    def _masses(
+        self, mass: Quantity | None = None, density: Quantity | None = None, gm: Quantity | None = None
+    ) -> tuple[float, float]:
+        """Return the mass and G m from the one that was given."""
+        where = f"RigidBody {self.name}"
+        if gm is not None:
+            value = float(to_si(gm, "m3 / s2", f"{where}: gm", sign="positive"))
+            return value / G, value
+        if density is not None:
+            if self.shape.volume is None:
+                raise InputError(
+                    f"{where}: a {type(self.shape).__name__} has no volume: give mass= or gm=, not density="
+                )
+            value = float(to_si(density, "kg / m3", f"{where}: density", sign="positive")) * self.shape.volume
+        else:
+            value = float(to_si(mass, "kg", f"{where}: mass", sign="positive"))
+        return value, G * value
+
+    def _given_inertia(self, inertia: Quantity) -> Floats:
+        """Return the inertia matrix in the shape's frame that the user gave."""
+        where = f"RigidBody {self.name}: inertia"
+        if np.shape(inertia) == (3,):
+            return np.diag(to_si(inertia, "kg m2", where, shape=(3,), sign="positive"))
+        return to_si(inertia, "kg m2", where, shape=(3, 3))
+
+    def _check_moments(self, moments: Floats) -> None:
+        """Raise where no rigid mass has these principal moments."""
+        where = f"RigidBody {self.name}: inertia"
+        shown = ", ".join(f"{moment:.6g}" for moment in moments)
+        largest = moments.max()
+        if moments.min() <= 1e-12 * largest:
+            raise InputError(
+                f"{where}: principal moments {shown} kg m2 must all be positive: a point or a line of points has none "
+                "about itself; give inertia="
+            )
+        if 2 * largest > moments.sum() * (1 + 1e-9):
+            raise InputError(
+                f"{where}: principal moments {shown} kg m2 break the triangle inequality: "
+                "the largest can be at most the sum of the other two"
+            )
+
+    @property
+    def points(self) -> tuple[Floats, Floats] | None:
+        """Point masses in the body frame: positions (k, 3) [m] and fractions of the mass (k,); None without them."""
+        if self.shape.points is None:
+            return None
+        positions, fractions = self.shape.points
+        return (positions - self.shape.centre) @ self.turn, fractions
+
+    @property
+    def surface(self) -> list[tuple[Floats, Floats]]:
+        """Ellipsoids that make the surface, in the body frame: centre (3,) and matrix (3, 3) of each [m, m2].
+
+        A point p is on the surface where (p - centre) . matrix^-1 (p - centre) = 1.
+        """
+        return [
+            ((centre - self.shape.centre) @ self.turn, self.turn.T @ np.diag(axes**2) @ self.turn)
+            for centre, axes in self.shape.pieces
+        ]
+
+    @property
+    def bounding_radius(self) -> float:
+        """Radius of a sphere about the mass centre that holds the surface [m]; 0 without a surface."""
+        return max(
+            (float(np.linalg.norm(centre - self.shape.centre) + axes.max()) for centre, axes in self.shape.pieces),
+            default=0.0,
+        )
+
+
+def principal_axes(matrix: Floats, name: str) -> tuple[Floats, Floats]:
+    """Return the principal moments and the rotation body -> given frame that is nearest to the identity.
+
+    Where two moments are equal, the axes in their plane are chosen to be nearest too.
+    """
+    scale = np.abs(matrix).max()
+    if not np.allclose(matrix, matrix.T, rtol=0, atol=1e-9 * scale):
+        raise InputError(f"{name}: expected a symmetric matrix, got {matrix.tolist()}")
+    off_diagonal = matrix - np.diag(np.diag(matrix))
+    if np.abs(off_diagonal).max() <= 1e-15 * scale:
+        return np.diag(matrix).copy(), np.eye(3)
+    moments, axes = np.linalg.eigh((matrix + matrix.T) / 2)
+    candidates = (
+        (moments[list(order)], axes[:, order] * signs)
+        for order in permutations(range(3))
+        for signs in product((1.0, -1.0), repeat=3)
+    )
+    rotations = [
+        (m, _nearest_in_equal_planes(m, r, EQUAL_MOMENTS * moments.max()))
+        for m, r in candidates
+        if np.linalg.det(r) > 0
+    ]
+    best_moments, best = max(rotations, key=lambda candidate: float(np.trace(candidate[1])))
+    return checked(best_moments.copy(), name, (3,)), best
+
+
+def _nearest_in_equal_planes(moments: Floats, rotation: Floats, tolerance: float) -> Floats:
+    """Turn the axes of equal moments in their own plane to where the trace is largest."""
+    rotation = rotation.copy()
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        if abs(moments[i] - moments[j]) <= tolerance:
+            angle = np.arctan2(rotation[i, j] - rotation[j, i], rotation[i, i] + rotation[j, j])
+            first, second = rotation[:, i].copy(), rotation[:, j].copy()
+            rotation[:, i] = np.cos(angle) * first + np.sin(angle) * second
+            rotation[:, j] = np.cos(angle) * second - np.sin(angle) * first
+    return rotation

@@ -1,0 +1,315 @@
+"""The command line: ``binaryast list | show | run | plot | completion``.
+
+Results go to standard output, everything else to standard error; an error is one line and an exit status that is not 0:
+1 for a run that failed, 2 for wrong input, 130 for Ctrl-C.
+"""
+
+import argparse
+import json
+import os
+import sys
+import warnings
+from collections.abc import Sequence
+from dataclasses import replace
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+from binaryast.errors import BinaryastError, InputError
+
+if TYPE_CHECKING:
+    from binaryast.integrators import Integrator
+    from binaryast.scenario import Scenario
+    from binaryast.state import State
+    from binaryast.system import System
+    from binaryast.trajectory import Trajectory
+
+FAILED, WRONG_INPUT, INTERRUPTED = 1, 2, 130
+FIGURES = (
+    "status",
+    "message",
+    "steps",
+    "step",
+    "wall_time",
+    "max_relative_energy_error",
+    "max_energy_error",
+    "max_energy_error_over_potential",
+    "max_relative_angular_momentum_error",
+    "max_relative_linear_momentum_error",
+    "max_rotation_error",
+    "closest_approach",
+    "closest_approach_time",
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; return the exit status."""
+    arguments = sys.argv[1:] if arguments is None else list(arguments)
+    warnings.showwarning = _show_warning
+    try:
+        options = parser().parse_args(arguments)
+        status: int = options.command(options)
+        sys.stdout.flush()
+        return status
+    except BrokenPipeError:  # the reader has seen enough, as in "binaryast list | head -1"
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        return _complain("stopped before there was anything to keep", "KeyboardInterrupt", arguments, INTERRUPTED)
+    except BinaryastError as error:
+        return _complain(str(error), type(error).__name__, arguments, WRONG_INPUT)
+    except MemoryError:
+        return _complain("not enough memory: save less often, with --save-every", "MemoryError", arguments, FAILED)
+
+
+def _complain(text: str, kind: str, arguments: Sequence[str], status: int) -> int:
+    """Say in one line what was wrong; with ``--json`` also as the one object on standard output."""
+    print(f"binaryast: error: {' '.join(text.split())}", file=sys.stderr)
+    if "--json" in arguments:
+        print(json.dumps({"status": "error", "error": kind, "message": text}))
+    return status
+
+
+def _show_warning(message: Any, category: type[Warning], *_: Any, **__: Any) -> None:
+    print(f"binaryast: warning: {message}", file=sys.stderr)
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose errors are ours: one line, with a hint."""
+
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message}; see '{self.prog} --help'")
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of the whole command line."""
+    top = _Parser(prog="binaryast", description="Rigid bodies under mutual gravity: the full two-body problem.")
+    top.add_argument("--version", action="version", version=f"binaryast {version('binaryast')}")
+    commands = top.add_subparsers(title="commands", metavar="COMMAND", required=True)
+
+    listing = commands.add_parser("list", help="the systems of the catalogue")
+    listing.set_defaults(command=_list)
+
+    showing = commands.add_parser("show", help="what the catalogue knows of a system, or a scenario file says")
+    _system_argument(showing)
+    showing.add_argument("--toml", action="store_true", help="print it as a scenario file, to start one's own from")
+    showing.set_defaults(command=_show)
+
+    running = commands.add_parser("run", help="follow a system through time; write a file and a picture")
+    _system_argument(running, "; or the .h5 file of a run, to go on from its end")
+    running.add_argument("--duration", metavar="TIME", help="how long, such as 60d")
+    running.add_argument("--step", metavar="TIME", help="largest step, such as 40s")
+    running.add_argument("--save-every", metavar="TIME", help="time between saved rows, such as 10min")
+    running.add_argument("--degree", type=int, choices=(0, 2), help="degree of the mutual gravity: 0 point masses, 2")
+    running.add_argument("--integrator", choices=("LGVI",), default="LGVI", help="method (default: LGVI)")
+    running.add_argument("--order", type=int, choices=(2,), default=2, help="order of the method (default: 2)")
+    _file(running.add_argument("-o", "--output", metavar="FILE.h5", help="where to write (default: NAME.h5 here)"))
+    running.add_argument("--no-picture", action="store_true", help="write no picture beside the file")
+    running.add_argument("--force", action="store_true", help="replace files that exist")
+    running.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+    running.set_defaults(command=_run)
+
+    plotting = commands.add_parser("plot", help="draw a run")
+    _file(plotting.add_argument("file", metavar="FILE.h5", help="a run"))
+    kinds = ("orbit", "separation", "spins", "libration", "energy_exchange", "conserved")
+    plotting.add_argument("--kind", choices=kinds, help="one picture instead of all on a page")
+    _file(plotting.add_argument("-o", "--output", metavar="FILE.png", help="png, pdf or svg (default: FILE.png)"))
+    plotting.add_argument("--force", action="store_true", help="replace a file that exists")
+    plotting.set_defaults(command=_plot)
+
+    completing = commands.add_parser("completion", help="print the completion script of a shell")
+    completing.add_argument("shell", choices=("bash", "zsh"))
+    completing.set_defaults(command=_completion)
+    return top
+
+
+def _system_argument(command: argparse.ArgumentParser, more: str = "") -> None:
+    """Add the argument that names a system, completed by the catalogue's names and files."""
+    action = command.add_argument(
+        "system", metavar="NAME-or-FILE", help=f"catalogue entry or scenario file (.toml){more}"
+    )
+    action.complete = {"bash": "_binaryast_systems", "zsh": "_binaryast_systems"}  # type: ignore[attr-defined]
+
+
+def _file(action: argparse.Action) -> None:
+    """Have an option completed by file names."""
+    action.complete = {"bash": "_shtab_compgen_files", "zsh": "_files"}  # type: ignore[attr-defined]
+
+
+def _is_file(system: str) -> bool:
+    """Whether an argument is meant as a file, not as a name of the catalogue."""
+    return Path(system).suffix in (".toml", ".h5") or os.sep in system
+
+
+def _scenario(system: str) -> "Scenario":
+    """Return the scenario of a file or a catalogue entry."""
+    from binaryast import catalogue, scenario
+
+    return scenario.load(system) if _is_file(system) else catalogue.scenario(system)
+
+
+def _list(options: argparse.Namespace) -> int:
+    from binaryast import catalogue
+
+    for name in catalogue.names():
+        print(f"{name:12} {catalogue.title(name)}")
+    return 0
+
+
+def _show(options: argparse.Namespace) -> int:
+    entry = _scenario(options.system)
+    if options.toml:
+        print(entry.text, end="")
+        return 0
+    print(f"{entry.name}: {entry.title}")
+    for role, body in zip(("primary", "secondary"), entry.system.bodies, strict=True):
+        moments = ", ".join(f"{moment:.6g}" for moment in body.si.moments)
+        density = "" if body.density is None else f", {body.density.value:.5g} kg/m3"
+        print(f"  {body.name} ({role}): {body.shape!r}".replace("<Quantity ", "").replace(">", ""))
+        print(f"    {body.si.mass:.6g} kg, GM {body.si.gm:.8g} m3/s2{density}; moments {moments} kg m2")
+    print(f"  gravity: {entry.system.gravity!r}")
+    print(f"  start: separation {entry.state.separation.value:.8g} m, axes {entry.state.frame}")
+    print(f"  by default: {entry.duration:g} in steps of {entry.integrator.step:g}")
+    for source in entry.sources:
+        more = "".join(f"; {key}: {source[key]}" for key in ("uncertainty", "note") if key in source)
+        print(f"  {source['what']}: {source['source']}{more}")
+    return 0
+
+
+def _run(options: argparse.Namespace) -> int:
+    from binaryast import storage
+
+    stem = Path(options.system).stem if _is_file(options.system) else options.system
+    continued = Path(options.system).suffix == ".h5"
+    output = Path(options.output or (f"{stem}-continued.h5" if continued else f"{stem}.h5"))
+    picture = None if options.no_picture else output.with_suffix(".png")
+    duration, step, save_every = (
+        _time(getattr(options, name), f"--{name.replace('_', '-')}") for name in ("duration", "step", "save_every")
+    )
+    system, state, integrator, duration, save_every = _start(options.system, duration, step, save_every, options.degree)
+    for path in (output, picture):
+        if path is not None:
+            storage.refuse(path, force=options.force)
+    run = _propagate(system, state, integrator, duration, save_every, progress=not options.json)
+    run.write(output, force=options.force)
+    if picture is not None:
+        from binaryast import plotting
+
+        plotting.save(run, picture, force=options.force)
+    _report(run, output, picture, as_json=options.json)
+    if run.status == "interrupted":
+        left = duration.to_value("s") - run.si.time[-1]
+        print(
+            f"binaryast: stopped by Ctrl-C; what was computed is in {output}. "
+            f"Go on with: binaryast run {output} --duration {left:.9g}s",
+            file=sys.stderr,
+        )
+    return {"failed": FAILED, "interrupted": INTERRUPTED}.get(run.status, 0)
+
+
+def _time(text: str | None, option: str) -> Any:
+    """Return the time that an option says, None where it is not given."""
+    from binaryast.units import parse, quantity, to_si
+
+    return None if text is None else quantity(to_si(parse(text, "s", option), "s", option, sign="positive"), "s")
+
+
+def _start(
+    system: str, duration: Any, step: Any, save_every: Any, degree: int | None
+) -> tuple["System", "State", "Integrator", Any, Any]:
+    """Return what to run: a scenario or the end of an earlier run, with the options in the place of its own values."""
+    _say_if_cold()
+    from binaryast import gravity
+    from binaryast.integrators import LGVI
+
+    if Path(system).suffix == ".h5":
+        from binaryast.trajectory import Trajectory
+
+        earlier = Trajectory.read(system)
+        if duration is None:
+            raise InputError(f"--duration: say how long to go on from the end of {system}, such as --duration 60d")
+        pair, start, integrator = earlier.system, earlier[-1], earlier.integrator
+    else:
+        entry = _scenario(system)
+        pair, start, integrator = entry.system, entry.state, entry.integrator
+        duration = entry.duration if duration is None else duration
+        save_every = entry.save_every if save_every is None else save_every
+    if degree is not None:
+        pair = replace(pair, gravity=gravity.PointMass() if degree == 0 else gravity.SecondDegree())
+    return pair, start, integrator if step is None else LGVI(step), duration, save_every
+
+
+def _say_if_cold() -> None:
+    """Say why the first run on a machine takes longer."""
+    from binaryast.kernels.jit import is_cold
+
+    if is_cold():
+        print("binaryast: compiling, once on this machine; this takes some ten seconds", file=sys.stderr)
+
+
+def _propagate(
+    system: "System", state: "State", integrator: "Integrator", duration: Any, save_every: Any, *, progress: bool
+) -> "Trajectory":
+    """Run; what ends a run early is in the report, so it needs no warning."""
+    from binaryast.errors import EndWarning
+    from binaryast.propagation import propagate
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", EndWarning)
+        return propagate(
+            system, state, duration=duration, integrator=integrator, save_every=save_every, progress=progress
+        )
+
+
+def _report(run: "Trajectory", output: Path, picture: Path | None, *, as_json: bool) -> None:
+    """Print the summary, or one JSON object."""
+    from binaryast import analysis
+
+    try:
+        period = analysis.mutual_period(run).value if run.energy_of_orbit[-1] < 0 else None
+    except InputError:  # less than one turn, or too few rows to count turns
+        period = None
+    if as_json:
+        figures = {name: getattr(run, name) for name in FIGURES}
+        result = {name: getattr(value, "value", value) for name, value in figures.items()}
+        result |= {
+            "names": list(run.system.names),
+            "integrator": repr(run.integrator),
+            "rows": len(run),
+            "duration": float(run.si.time[-1]),
+            "mutual_period": None if period is None else period * 3600,
+            "file": str(output),
+            "picture": None if picture is None else str(picture),
+            "provenance": run.provenance,
+        }
+        print(json.dumps(result, allow_nan=False, default=float))
+        return
+    print(run.summary())
+    if period is not None:
+        print(f"  mutual period {period:.8g} h")
+    print(f"  written: {output}" + ("" if picture is None else f", {picture}"))
+
+
+def _plot(options: argparse.Namespace) -> int:
+    from binaryast import plotting, storage
+    from binaryast.trajectory import Trajectory
+
+    output = Path(options.output or Path(options.file).with_suffix(".png"))
+    storage.refuse(output, force=options.force)
+    path = plotting.save(Trajectory.read(options.file), output, kind=options.kind, force=options.force)
+    print(f"written: {path}")
+    return 0
+
+
+def _completion(options: argparse.Namespace) -> int:
+    import shtab
+
+    from binaryast import catalogue
+
+    names = " ".join(catalogue.names())
+    preamble = {
+        "bash": f'_binaryast_systems() {{ compgen -W "{names}" -- "$1"; compgen -f -- "$1"; }}',
+        "zsh": f"_binaryast_systems() {{ compadd {names}; _files }}",
+    }
+    print(shtab.complete(parser(), options.shell, preamble=preamble))
+    return 0

@@ -1,0 +1,45 @@
+"""Every error and warning of the package, under one root each."""
+
+
+class BinaryastError(Exception):
+    """Root of all errors of the package; its text is one line that says how to mend it."""
+
+
+class InputError(BinaryastError, ValueError):
+    """A value that cannot be: negative mass, a matrix that is not a rotation, a step longer than the run."""
+
+
+class UnitError(InputError):
+    """A bare number where a quantity is expected, or a quantity of another kind."""
+
+
+class StepError(InputError):
+    """A step for which the method has no solution, or one longer than what it has to divide."""
+
+
+class ContactError(InputError):
+    """Bodies that overlap at the start."""
+
+
+class ScenarioError(InputError):
+    """A scenario file that cannot be understood."""
+
+
+class StorageError(BinaryastError, OSError):
+    """A file that is missing, broken, in the way, or cannot be written."""
+
+
+class CheckError(BinaryastError, AssertionError):
+    """A run whose errors are larger than what `binaryast.Trajectory.check` was asked to accept."""
+
+
+class BinaryastWarning(UserWarning):
+    """Root of all warnings of the package: each is something that the user can change."""
+
+
+class StepWarning(BinaryastWarning):
+    """A step that works but is doubtful."""
+
+
+class EndWarning(BinaryastWarning):
+    """A run that ended before its time."""

@@ -1,0 +1,167 @@
+"""How a pair attracts: each model checks whether it can take two bodies, and gives a compiled function and parameters.
+
+The paper's body 1 is the secondary, its body 2 the primary; U(X, R) is in the primary's frame.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from binaryast.bodies import RigidBody
+from binaryast.errors import InputError
+from binaryast.units import Floats
+from binaryast.values import Value
+
+
+class Gravity(Value, ABC):
+    """A model of the mutual gravity of a pair."""
+
+    @property
+    @abstractmethod
+    def potential(self) -> Callable[..., Any]:
+        """The compiled pair potential: U, dU/dX, M from (parameters, X, R)."""
+
+    @abstractmethod
+    def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
+        """Return what the potential needs of the two bodies.
+
+        Raises
+        ------
+        InputError
+            Where the model cannot take these bodies.
+        """
+
+
+@dataclass(frozen=True, eq=False)
+class PointMass(Gravity):
+    """Two point masses: bodies that attract like spheres and turn freely.
+
+    Examples
+    --------
+    >>> import binaryast as ba
+    >>> ba.PointMass()
+    PointMass()
+    """
+
+    @property
+    def potential(self) -> Callable[..., Any]:
+        """The compiled pair potential."""
+        from binaryast.kernels.mutual.point_mass import potential
+
+        return potential
+
+    def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
+        """Return G m1 m2."""
+        return np.array([secondary.si.gm * primary.si.mass])
+
+
+@dataclass(frozen=True, eq=False)
+class SecondDegree(Gravity):
+    """MacCullagh's field of both bodies: monopoles, and each body's second-degree moments on the other's mass.
+
+    It needs nothing but masses and moments of inertia, so it takes every body.
+
+    Examples
+    --------
+    >>> import binaryast as ba
+    >>> ba.SecondDegree()
+    SecondDegree()
+    """
+
+    @property
+    def potential(self) -> Callable[..., Any]:
+        """The compiled pair potential."""
+        from binaryast.kernels.mutual.second_degree import potential
+
+        return potential
+
+    def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
+        """Return G m1 m2, G m2 J1 (3), G m1 J2 (3)."""
+        one, two = secondary.si, primary.si
+        return np.concatenate([[one.gm * two.mass], two.gm * one.moments, one.gm * two.moments])
+
+
+@dataclass(frozen=True, eq=False)
+class PointPairs(Gravity):
+    """Every point of one body attracts every point of the other: exact for dumbbells, point clouds and spheres.
+
+    Examples
+    --------
+    >>> import binaryast as ba
+    >>> ba.PointPairs()
+    PointPairs()
+    """
+
+    @property
+    def potential(self) -> Callable[..., Any]:
+        """The compiled pair potential."""
+        from binaryast.kernels.mutual.points import potential
+
+        return potential
+
+    def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
+        """Return the counts, and the coordinates and masses of the points of both bodies."""
+        (x1, f1), (x2, f2) = _points(secondary), _points(primary)
+        gm1, m2 = f1 * secondary.si.gm, f2 * primary.si.mass
+        return np.concatenate([[len(f1), len(f2)], x1.T.ravel(), gm1, x2.T.ravel(), m2])
+
+
+def _points(body: RigidBody) -> tuple[Floats, Floats]:
+    """Return a body's points, or say that it has none."""
+    if body.points is None:
+        raise InputError(
+            f"PointPairs: {body.name} is {_article(type(body.shape).__name__)}, which is not a set of points: "
+            "use gravity=ba.SecondDegree(), or give it a PointCloud, Dumbbell or Sphere"
+        )
+    return body.points
+
+
+def _article(noun: str) -> str:
+    return f"an {noun}" if noun[0] in "AEIOU" else f"a {noun}"
+
+
+@dataclass(frozen=True, eq=False)
+class PairPotential(Gravity):
+    """A mutual potential that the user wrote.
+
+    Parameters
+    ----------
+    function : callable
+        A function compiled by `binaryast.pair_potential`.
+    values : sequence of float
+        Its parameters ``p``, in SI.
+
+    Examples
+    --------
+    >>> import binaryast as ba
+    >>> @ba.pair_potential
+    ... def kepler(p, x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33):
+    ...     r = (x * x + y * y + z * z) ** 0.5
+    ...     w = p[0] / r**3
+    ...     return -p[0] / r, w * x, w * y, w * z, 0.0, 0.0, 0.0
+    >>> gravity = ba.PairPotential(kepler, [1e10])
+    """
+
+    function: Callable[..., Any]
+    values: Sequence[float] = ()
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.function, str) and not hasattr(self.function, "py_func"):
+            raise InputError(f"PairPotential: {self.function!r} is not compiled: decorate it with @ba.pair_potential")
+        self._set(values=np.array(self.values, dtype=np.float64))
+
+    @property
+    def potential(self) -> Callable[..., Any]:
+        """The compiled pair potential."""
+        if isinstance(self.function, str):  # read from a file on which only the name could be kept
+            raise InputError(
+                f"PairPotential: the function {self.function} cannot be imported here: build the system anew"
+            )
+        return self.function
+
+    def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
+        """Return the user's parameters."""
+        return np.array(self.values)

@@ -1,0 +1,167 @@
+"""The one decorator that compiles a kernel, the folder of its cache, and the signatures of function pointers.
+
+A kernel is either a helper, compiled into whatever calls it (``@jit``), or an entry point with an explicit
+signature (``@jit(SIGNATURE)``), compiled once and kept on disk. numba's own cache does not notice when a function in
+*another* file changes; so the folder is named by a hash of all kernel sources, and an old number cannot come back.
+"""
+
+import hashlib
+import os
+import shutil
+import sys
+import tempfile
+import threading
+import time
+import warnings
+from collections.abc import Callable
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any, TypeAlias, TypeVar
+
+import numba
+import numpy as np
+from numba import types
+from numpy.typing import NDArray
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+Array: TypeAlias = NDArray[np.float64]
+Vector: TypeAlias = tuple[float, float, float]
+Quaternion: TypeAlias = tuple[float, float, float, float]
+Matrix: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
+PairGravity: TypeAlias = tuple[float, float, float, float, float, float, float]  # U, dU/dX, M
+PairPotential: TypeAlias = Callable[..., PairGravity]
+
+ARRAY = types.Array(types.float64, 1, "C")
+ROWS = types.Array(types.float64, 2, "C")
+
+# U, dU/dX (3), M (3) from the parameters p, X (3) and R (9, row by row); scalars only, so that the function can be
+# inlined, run in lanes or be compiled for another device.
+PAIR_POTENTIAL = types.UniTuple(types.float64, 7)(ARRAY, *[types.float64] * 12)
+# What is watched at every step: energy, angular momentum (3), rotation error, separation from (state, constants).
+MEASURE = types.UniTuple(types.float64, 6)(ARRAY, ARRAY)
+# Whether surfaces touch, from (state, surfaces).
+TOUCH = types.boolean(ARRAY, ARRAY)
+# One step of h: status from (state, constants, potential, parameters, h).
+STEP = types.int64(ARRAY, ARRAY, types.FunctionType(PAIR_POTENTIAL), ARRAY, types.float64)
+# Completes a working state: (state, potential, parameters).
+PREPARE = types.void(ARRAY, types.FunctionType(PAIR_POTENTIAL), ARRAY)
+
+OPTIONS = {"nogil": True, "error_model": "numpy"}  # numpy: a division by zero gives inf, without a branch for each
+_UNUSED_FOR = 30 * 86400.0  # seconds after which the cache of another version is removed
+_numba_configuration = threading.Lock()
+
+
+def source_hash() -> str:
+    """Return the hash of all kernel sources, the package version and numba's, which names the cache folder."""
+    digest = hashlib.sha256()
+    folder = Path(__file__).parent
+    for path in sorted(folder.rglob("*.py")):
+        digest.update(path.relative_to(folder).as_posix().encode())
+        digest.update(path.read_bytes())
+    try:
+        digest.update(version("binaryast").encode())
+    except PackageNotFoundError:  # running from a bare source tree
+        pass
+    digest.update(numba.__version__.encode())
+    return digest.hexdigest()[:16]
+
+
+def cache_root() -> Path:
+    """Return the user's folder for compiled kernels: ``$BINARYAST_CACHE_DIR``, or the platform's cache folder."""
+    if chosen := os.environ.get("BINARYAST_CACHE_DIR"):
+        return Path(chosen)
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "binaryast" / "Cache"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches" / "binaryast"
+    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "binaryast"
+
+
+def _open_cache_folder() -> Path | None:
+    """Create the cache folder of these sources; None, with one warning, where nothing can be written."""
+    root = cache_root()
+    folder = root / f"kernels-{source_hash()}"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+        os.utime(folder)
+    except OSError as error:
+        warnings.warn(
+            f"compiled code cannot be kept in {root} ({error}); every process will compile again. "
+            "Set BINARYAST_CACHE_DIR to a folder that can be written",
+            UserWarning,
+            stacklevel=2,
+        )
+        return None
+    for other in root.glob("kernels-*"):
+        if other != folder and time.time() - other.stat().st_mtime > _UNUSED_FOR:
+            shutil.rmtree(other, ignore_errors=True)
+    return folder
+
+
+CACHE_FOLDER = _open_cache_folder()
+
+
+def is_cold() -> bool:
+    """Whether nothing has been compiled yet by these sources on this machine."""
+    return CACHE_FOLDER is None or next(CACHE_FOLDER.rglob("*.nbi"), None) is None
+
+
+def jit(signature: Any = None, *, allocates: bool = False, **options: Any) -> Callable[[Function], Function]:
+    """Compile a kernel; with a signature it is an entry point, compiled at once and kept in the cache folder.
+
+    Parameters
+    ----------
+    signature : numba signature, optional
+        Explicit types. Without one the function is a helper, compiled into its callers.
+    allocates : bool
+        Whether the function may make arrays. Where it may not, numba's reference counting is left out altogether: the
+        compiler then refuses an allocation, and passing an array to a helper costs nothing.
+    **options
+        Passed to `numba.njit`, such as ``fastmath``.
+    """
+    options = OPTIONS | {"_nrt": allocates} | options
+    if signature is None:
+        return numba.njit(forceinline=not allocates, **options)  # type: ignore[no-any-return]
+
+    def decorate(function: Function) -> Function:
+        with _numba_configuration:  # numba reads its folder where the function is decorated: lend it ours meanwhile
+            previous = numba.config.CACHE_DIR
+            numba.config.CACHE_DIR = str(CACHE_FOLDER or previous)
+            try:
+                return numba.njit(  # type: ignore[no-any-return]
+                    signature, cache=CACHE_FOLDER is not None, **options
+                )(function)
+            finally:
+                numba.config.CACHE_DIR = previous
+
+    return decorate
+
+
+def pair_potential(function: Function) -> Function:
+    """Compile a user's mutual potential of a pair, for `binaryast.PairPotential`.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(p, x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33)``: parameters ``p`` (float array), the
+        secondary's centre X [m] and attitude R (row by row) in the primary's frame. It returns seven floats: U [J],
+        dU/dX [N] and the moment M [N m] of equation (54) of Lee, Leok and McClamroch (2007), which is minus the torque
+        on the secondary, in the primary's frame.
+
+    Returns
+    -------
+    callable
+        The compiled function. It can still be called from Python.
+
+    Examples
+    --------
+    >>> import binaryast as ba
+    >>> @ba.pair_potential
+    ... def kepler(p, x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33):
+    ...     r = (x * x + y * y + z * z) ** 0.5
+    ...     w = p[0] / r**3
+    ...     return -p[0] / r, w * x, w * y, w * z, 0.0, 0.0, 0.0
+    """
+    return numba.njit(PAIR_POTENTIAL, **OPTIONS)(function)  # type: ignore[no-any-return]

@@ -1,0 +1,142 @@
+"""The production step of the Lie group variational integrator for a pair: the map (118)-(127), to the last digit.
+
+It is the printed map in other variables: the relative position in inertial axes instead of the primary's frame, each
+angular momentum in its own body's frame, attitudes as unit quaternions, and (123), (124) solved in Cayley coordinates.
+Values travel as tuples, which the compiler keeps in registers.
+"""
+
+from binaryast.kernels.compensated import add_vector, turn_quaternion
+from binaryast.kernels.implicit import solve_cayley
+from binaryast.kernels.jit import PREPARE, STEP, Array, Matrix, PairPotential, Quaternion, Vector, jit
+from binaryast.kernels.layout import (
+    ATTITUDE_1,
+    ATTITUDE_2,
+    GRADIENT,
+    INVERSE_1,
+    INVERSE_2,
+    MOMENTUM_1,
+    MOMENTUM_2,
+    POSITION,
+    POTENTIAL,
+    RATIOS_1,
+    RATIOS_2,
+    REDUCED_MASS,
+    REMAINDER,
+    TORQUE_1,
+    TORQUE_2,
+    VELOCITY,
+    matrix_at,
+    put_quaternion,
+    put_vector,
+    quaternion_at,
+    vector_at,
+)
+from binaryast.kernels.so3 import cayley, cross, quaternion_to_matrix, relative_attitude, rotate, rotate_back
+from binaryast.kernels.status import COMPLETED, NO_ROTATION_1, NO_ROTATION_2
+
+
+@jit()
+def turn_momentum(p: Vector, f: Quaternion) -> Vector:
+    """Return F^T P - P without cancellation: -2 w v x P + 2 v x (v x P), (v, w) being the turn's quaternion."""
+    v = (f[0], f[1], f[2])
+    c = cross(v, p)
+    d = cross(v, c)
+    w = f[3]
+    return 2.0 * (d[0] - w * c[0]), 2.0 * (d[1] - w * c[1]), 2.0 * (d[2] - w * c[2])
+
+
+@jit()
+def turn(
+    q: Quaternion, rq: Quaternion, p: Vector, rp: Vector, inverse: Vector, ratios: Vector, h: float
+) -> tuple[Quaternion, Quaternion, Vector, Vector, bool]:
+    """Turn one body freely for h; whether the implicit equation had a solution is the last value."""
+    c, iterations = solve_cayley(inverse, ratios, (h * p[0], h * p[1], h * p[2]))  # (123), (124)
+    f = cayley(c)
+    q, rq = turn_quaternion(q, rq, f)  # (122), (127)
+    p, rp = add_vector(p, rp, 1.0, turn_momentum(p, f))  # the F^T of (120), (121)
+    return q, rq, p, rp, iterations >= 0
+
+
+@jit()
+def attract(
+    x_inertial: Vector, r2: Matrix, r1: Matrix, potential: PairPotential, parameters: Array
+) -> tuple[float, Vector, Vector, Vector]:
+    """Return U, dU/dx1 in inertial axes and the torque on each body in its own frame, the primary's first."""
+    x = rotate_back(r2, x_inertial)  # X, (34)
+    r = relative_attitude(r2, r1)  # R, (35)
+    u, g1, g2, g3, m1, m2, m3 = potential(
+        parameters, x[0], x[1], x[2], r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]
+    )
+    xg = cross(x, (g1, g2, g3))
+    n1, n2, n3 = rotate_back(r, (m1, m2, m3))
+    return u, rotate(r2, (g1, g2, g3)), (xg[0] + m1, xg[1] + m2, xg[2] + m3), (-n1, -n2, -n3)
+
+
+@jit()
+def put_exerted(state: Array, u: float, gradient: Vector, torque_2: Vector, torque_1: Vector) -> None:
+    """Put the potential and what it exerts into the state."""
+    state[POTENTIAL] = u
+    put_vector(state, GRADIENT, gradient)
+    put_vector(state, TORQUE_2, torque_2)
+    put_vector(state, TORQUE_1, torque_1)
+
+
+@jit(STEP)
+def pair_step(state: Array, constants: Array, potential: PairPotential, parameters: Array, h: float) -> int:
+    """Advance a pair by h; the state is left as it was where the step has no solution, and the status says so."""
+    to_velocity = -0.5 * h / constants[REDUCED_MASS]
+    half = 0.5 * h
+
+    # half a kick: the brackets of (118)-(121), (123) and (124)
+    v, rv = vector_at(state, VELOCITY), vector_at(state, REMAINDER + VELOCITY)
+    v, rv = add_vector(v, rv, to_velocity, vector_at(state, GRADIENT))
+    p2, rp2 = vector_at(state, MOMENTUM_2), vector_at(state, REMAINDER + MOMENTUM_2)
+    p2, rp2 = add_vector(p2, rp2, half, vector_at(state, TORQUE_2))
+    p1, rp1 = vector_at(state, MOMENTUM_1), vector_at(state, REMAINDER + MOMENTUM_1)
+    p1, rp1 = add_vector(p1, rp1, half, vector_at(state, TORQUE_1))
+
+    # drift
+    x, rx = vector_at(state, POSITION), vector_at(state, REMAINDER + POSITION)
+    x, rx = add_vector(x, rx, h, v)  # (118)
+    q2, rq2 = quaternion_at(state, ATTITUDE_2), quaternion_at(state, REMAINDER + ATTITUDE_2)
+    inverse, ratios = vector_at(constants, INVERSE_2), vector_at(constants, RATIOS_2)
+    q2, rq2, p2, rp2, solved = turn(q2, rq2, p2, rp2, inverse, ratios, h)
+    if not solved:
+        return NO_ROTATION_2
+    q1, rq1 = quaternion_at(state, ATTITUDE_1), quaternion_at(state, REMAINDER + ATTITUDE_1)
+    inverse, ratios = vector_at(constants, INVERSE_1), vector_at(constants, RATIOS_1)
+    q1, rq1, p1, rp1, solved = turn(q1, rq1, p1, rp1, inverse, ratios, h)
+    if not solved:
+        return NO_ROTATION_1
+
+    # half a kick at the new configuration
+    u, gradient, torque_2, torque_1 = attract(
+        x, quaternion_to_matrix(q2), quaternion_to_matrix(q1), potential, parameters
+    )
+    v, rv = add_vector(v, rv, to_velocity, gradient)  # (119)
+    p1, rp1 = add_vector(p1, rp1, half, torque_1)  # (120)
+    p2, rp2 = add_vector(p2, rp2, half, torque_2)  # (121)
+
+    put_vector(state, POSITION, x)
+    put_vector(state, VELOCITY, v)
+    put_quaternion(state, ATTITUDE_2, q2)
+    put_vector(state, MOMENTUM_2, p2)
+    put_quaternion(state, ATTITUDE_1, q1)
+    put_vector(state, MOMENTUM_1, p1)
+    put_exerted(state, u, gradient, torque_2, torque_1)
+    put_vector(state, REMAINDER + POSITION, rx)
+    put_vector(state, REMAINDER + VELOCITY, rv)
+    put_quaternion(state, REMAINDER + ATTITUDE_2, rq2)
+    put_vector(state, REMAINDER + MOMENTUM_2, rp2)
+    put_quaternion(state, REMAINDER + ATTITUDE_1, rq1)
+    put_vector(state, REMAINDER + MOMENTUM_1, rp1)
+    return COMPLETED
+
+
+@jit(PREPARE)
+def prepare(state: Array, potential: PairPotential, parameters: Array) -> None:
+    """Fill in what the motion in the state exerts: a working state is complete after this."""
+    u, gradient, torque_2, torque_1 = attract(
+        vector_at(state, POSITION), matrix_at(state, ATTITUDE_2), matrix_at(state, ATTITUDE_1), potential, parameters
+    )
+    put_exerted(state, u, gradient, torque_2, torque_1)

@@ -1,0 +1,278 @@
+"""Figures of a trajectory: each takes an Axes or makes one, and returns it."""
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+
+from binaryast.analysis import libration_angle, mean_orbit_axes
+from binaryast.errors import InputError
+from binaryast.storage import refuse, replace_whole
+from binaryast.trajectory import Trajectory
+from binaryast.units import Floats
+
+PRIMARY, SECONDARY, DARK = "#1f4e79", "#c8553d", "#333333"
+COLOURS = (PRIMARY, SECONDARY)
+
+
+def _time(run: Trajectory) -> tuple[Floats, str]:
+    """Return the time in the unit that reads best, and its name."""
+    end = run.si.time[-1]
+    for unit, size in (("days", 86400.0), ("hours", 3600.0)):
+        if end >= 2 * size:
+            return run.si.time / size, unit
+    return run.si.time, "s"
+
+
+def _length(largest: float) -> tuple[float, str]:
+    """Return the size and the name of the length unit that reads best."""
+    return (1000.0, "km") if largest >= 10000 else (1.0, "m")
+
+
+def _axes(ax: Axes | None) -> Axes:
+    return plt.subplots(layout="constrained")[1] if ax is None else ax
+
+
+def _over_time(ax: Axes, run: Trajectory, label: str, title: str) -> Axes:
+    ax.set(xlabel=f"time [{_time(run)[1]}]", ylabel=label, title=title)
+    ax.margins(x=0)
+    ax.grid(alpha=0.25)
+    return ax
+
+
+def orbit(run: Trajectory, ax: Axes | None = None, *, frame: str = "inertial") -> Axes:
+    """Draw the paths of the mass centres in the mean orbit plane, and both bodies at the end.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Of a pair.
+    ax : Axes, optional
+        Where to draw; a new figure by default.
+    frame : {"inertial", "primary"}
+        Inertial, about the barycentre; or as seen from the primary, turning with it: x and y of its body frame.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    InputError
+        For another frame.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> system, state = ba.catalogue.load("didymos")
+    >>> run = ba.propagate(system, state, duration=1 * u.day, integrator=ba.LGVI(step=40 * u.s))
+    >>> ax = ba.plotting.orbit(run)
+    """
+    ax = _axes(ax)
+    if frame == "inertial":
+        plane = mean_orbit_axes(run)[:2]
+        paths, attitudes = run.si.position, run.si.attitude[-1]
+        place, subject = "in the orbit plane, inertial", "Orbit"
+    elif frame == "primary":
+        plane = np.eye(3)[:2]
+        relative = run.relative
+        paths = np.stack([np.zeros_like(relative.X.value), relative.X.value], axis=1)
+        attitudes = np.array([np.eye(3), relative.R[-1]])
+        place, subject = "in the primary's axes", f"Seen from {run.system.names[0]}, turning with it"
+    else:
+        raise InputError(f"orbit: frame={frame!r}: expected 'inertial' or 'primary'")
+    size, unit = _length(float(np.abs(paths).max()))
+    for i, body in enumerate(run.system.bodies):
+        path = paths[:, i] @ plane.T / size
+        ax.plot(*path.T, _style(path), color=COLOURS[i], lw=0.7, ms=1.5, alpha=0.7, label=body.name)
+        drawn = False
+        for centre, matrix in body.surface:
+            corners = _outline(plane @ attitudes[i] @ matrix @ attitudes[i].T @ plane.T)
+            middle = path[-1] + plane @ attitudes[i] @ centre / size
+            ax.add_patch(Polygon(middle + corners / size, fc=COLOURS[i], ec=DARK, lw=0.5, alpha=0.9, zorder=3))
+            drawn = True
+        if not drawn:
+            ax.plot(*path[-1], "o", color=COLOURS[i])
+    ax.set(xlabel=f"x [{unit}]  ({place})", ylabel=f"y [{unit}]", title=subject, aspect="equal")
+    ax.grid(alpha=0.25)
+    ax.legend(loc="upper right", fontsize="small")
+    return ax
+
+
+def _style(path: Floats) -> str:
+    """Return a line, or dots where rows lie so far apart that the chords between them would mislead."""
+    legs = np.diff(path, axis=0)
+    size = np.linalg.norm(legs, axis=1)
+    cosine = np.sum(legs[1:] * legs[:-1], axis=1) / np.maximum(size[1:] * size[:-1], 1e-300)
+    return "." if len(cosine) and np.median(cosine) < np.cos(0.15) and size.max() > 0 else "-"
+
+
+def _outline(matrix: Floats) -> Floats:
+    """Return the outline (k, 2) of an ellipsoid whose matrix, projected onto a plane, is ``matrix`` (2, 2)."""
+    angle = np.linspace(0, 2 * np.pi, 90)
+    return np.asarray((np.linalg.cholesky(matrix) @ np.array([np.cos(angle), np.sin(angle)])).T)
+
+
+def separation(run: Trajectory, ax: Axes | None = None) -> Axes:
+    """Draw the distance of the mass centres against time."""
+    ax = _axes(ax)
+    size, unit = _length(float(run.separation.value.max()))
+    ax.plot(_time(run)[0], run.separation.value / size, color=DARK, lw=0.8)
+    return _over_time(ax, run, f"separation [{unit}]", "Separation of the mass centres")
+
+
+def spins(run: Trajectory, ax: Axes | None = None) -> Axes:
+    """Draw each body's spin rate against time: its relative change, or itself where one starts at rest."""
+    ax = _axes(ax)
+    rates = np.linalg.norm(run.si.spin, axis=-1)
+    relative = bool(np.all(rates[0] > 0))
+    for i, name in enumerate(run.system.names):
+        values = rates[:, i] / rates[0, i] - 1 if relative else rates[:, i]
+        label = f"{name}: {2 * np.pi / rates[0, i] / 3600:.4g} h at the start" if relative else name
+        ax.plot(_time(run)[0], values, color=COLOURS[i], lw=0.8, label=label)
+    ax.legend(loc="best", fontsize="small")
+    return _over_time(ax, run, "spin rate / that at the start - 1" if relative else "spin rate [rad/s]", "Spins")
+
+
+def libration(run: Trajectory, ax: Axes | None = None) -> Axes:
+    """Draw the angle from the line of centres to the secondary's x axis against time."""
+    ax = _axes(ax)
+    ax.plot(_time(run)[0], np.degrees(libration_angle(run).value), color=SECONDARY, lw=0.8)
+    return _over_time(ax, run, "libration angle [deg]", f"Libration of {run.system.names[1]}")
+
+
+def energy_exchange(run: Trajectory, ax: Axes | None = None) -> Axes:
+    """Draw how energy goes to and fro between orbit, spins and potential, each from its value at the start."""
+    ax = _axes(ax)
+    time, _ = _time(run)
+    scale = abs(run.si.potential_energy[0])
+    for values, label, colour in (
+        (run.translational_energy, "translation", PRIMARY),
+        (run.rotational_energy, "rotation", SECONDARY),
+        (run.potential_energy, "potential", "#6a994e"),
+    ):
+        ax.plot(time, (values.value - values.value[0]) / scale, color=colour, lw=0.6, alpha=0.8, label=label)
+    ax.legend(loc="best", fontsize="small")
+    return _over_time(ax, run, "change / |U at the start|", "Exchange of energy")
+
+
+def conserved(run: Trajectory, ax: Axes | None = None) -> Axes:
+    """Draw the errors of energy, angular momentum and rotation at the saved rows, on a logarithmic axis."""
+    ax = _axes(ax)
+    time, _ = _time(run)
+    energy, momentum = run.energy.value, run.angular_momentum.value
+    curves: tuple[tuple[Floats, str, str], ...] = (
+        (np.abs(energy / energy[0] - 1), "energy", PRIMARY),
+        (np.linalg.norm(momentum - momentum[0], axis=1) / np.linalg.norm(momentum[0]), "angular momentum", SECONDARY),
+        (run.rotation_error, r"rotation, $\|I - R^T R\|$", "#6a994e"),
+    )
+    floor = np.finfo(float).eps / 4  # an error of zero has no logarithm
+    for values, label, colour in curves:
+        ax.semilogy(time, np.maximum(values, floor), color=colour, lw=0.8, label=label)
+    ax.legend(loc="best", fontsize="small")
+    return _over_time(ax, run, "relative error", "What should be conserved")
+
+
+KINDS: dict[str, Callable[..., Any]] = {
+    "orbit": orbit,
+    "separation": separation,
+    "spins": spins,
+    "libration": libration,
+    "energy_exchange": energy_exchange,
+    "conserved": conserved,
+}
+
+
+def overview(run: Trajectory) -> Figure:
+    """Draw all of it on one page.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> system, state = ba.catalogue.load("didymos")
+    >>> run = ba.propagate(system, state, duration=1 * u.day, integrator=ba.LGVI(step=40 * u.s))
+    >>> figure = ba.plotting.overview(run)
+    """
+    figure, axes = plt.subplots(2, 4, figsize=(18, 8.5), layout="constrained")
+    figure.suptitle(f"{' and '.join(run.system.names)}: {_title(run)}")
+    orbit(run, axes[0, 0])
+    orbit(run, axes[1, 0], frame="primary")
+    separation(run, axes[0, 1])
+    libration(run, axes[1, 1])
+    spins(run, axes[0, 2])
+    energy_exchange(run, axes[1, 2])
+    conserved(run, axes[0, 3])
+    _figures(run, axes[1, 3])
+    return figure
+
+
+def _title(run: Trajectory) -> str:
+    time, unit = _time(run)
+    method = run.integrator
+    return f"{time[-1]:.4g} {unit}, {type(method).__name__} of order {method.order}, steps of {run.step.value:g} s"
+
+
+def _figures(run: Trajectory, ax: Axes) -> None:
+    """Write the figures of the run into an Axes without axes."""
+    lines = [
+        f"status: {run.status}",
+        f"{run.steps} steps of {run.step.value:g} s",
+        "",
+        "largest errors, over every step:",
+        f"  energy            {run.max_relative_energy_error:.2e} |E0|",
+        f"                    {run.max_energy_error_over_potential:.2e} |U0|",
+        f"  angular momentum  {run.max_relative_angular_momentum_error:.2e}",
+        f"  rotation          {run.max_rotation_error:.2e}",
+        "",
+        f"closest approach    {run.closest_approach.value:.6g} m",
+    ]
+    ax.axis("off")
+    ax.text(0.02, 0.95, "\n".join(lines), transform=ax.transAxes, va="top", family="monospace")
+
+
+def save(run: Trajectory, path: str | Path, *, kind: str | None = None, force: bool = False) -> Path:
+    """Draw a run into a file, whole or not at all.
+
+    Parameters
+    ----------
+    run : Trajectory
+    path : path
+        Its suffix says the format: png, pdf, svg.
+    kind : str, optional
+        One of `KINDS`; the overview by default.
+    force : bool
+        Whether a file of that name may be replaced.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    StorageError
+        Where it cannot be written.
+    InputError
+        For an unknown kind or format.
+    """
+    path = Path(path)
+    refuse(path, force=force)
+    if kind is not None and kind not in KINDS:
+        raise InputError(f"{kind!r} is not a kind of picture: expected one of {', '.join(KINDS)}")
+    with plt.rc_context({"backend": "agg"}):
+        figure = overview(run) if kind is None else KINDS[kind](run).figure
+        memory = io.BytesIO()
+        try:
+            figure.savefig(memory, format=path.suffix.lstrip(".") or "png", dpi=110)
+        except ValueError as error:
+            raise InputError(f"{path}: {error}") from None
+        finally:
+            plt.close(figure)
+    return replace_whole(path, memory.getvalue(), force=force)

@@ -1,0 +1,398 @@
+"""The driver of a run: it checks, cuts the time into equal steps, calls the compiled loop in chunks, and reports."""
+
+import platform
+import signal
+import threading
+import time
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from importlib.metadata import version
+from math import ceil, floor, pi
+from typing import Any, NamedTuple
+
+import astropy.units as u
+import numpy as np
+from astropy.units import Quantity
+
+from binaryast import constants, working
+from binaryast.errors import ContactError, EndWarning, InputError, StepError, StepWarning
+from binaryast.integrators import Integrator
+from binaryast.kernels import layout, loop, status
+from binaryast.kernels.contact import pair_touches
+from binaryast.kernels.jit import source_hash
+from binaryast.kernels.measure import pair_measure
+from binaryast.state import State
+from binaryast.system import System
+from binaryast.trajectory import Trajectory, TrajectoryFloats
+from binaryast.units import quantity, to_si
+
+MOST_ROWS_BY_DEFAULT = 2000
+MOST_ROWS = 10_000_000
+SLACK = 1e-9  # relative: a duration of 8640.000000001 saving intervals has 8640 of them
+DOUBTFUL_TURN = 2 * pi / 20  # rad in one step
+CHUNK_SECONDS = 0.1  # between two looks at the keyboard
+
+
+class Segment(NamedTuple):
+    """Equal steps: their size [s], how many, and after how many a row is saved."""
+
+    step: float
+    count: int
+    stride: int
+
+
+def propagate(
+    system: System,
+    state: State,
+    *,
+    duration: Quantity,
+    integrator: Integrator,
+    save_every: Quantity | None = None,
+    progress: bool = False,
+) -> Trajectory:
+    """Follow a system through time.
+
+    Parameters
+    ----------
+    system : System
+        The bodies and their gravity.
+    state : State
+        Where they start. A barycentre that moves goes on doing so.
+    duration : Quantity
+        How long (time); met exactly.
+    integrator : Integrator
+        How, such as ``LGVI(step=40 * u.s)``. The step used is the largest one up to this that divides ``save_every``.
+    save_every : Quantity, optional
+        Time between saved rows; met exactly, with one more row at the end where it does not divide ``duration``. By
+        default at most about 2000 rows are kept, each a whole number of steps apart.
+    progress : bool
+        Whether to show a bar with the simulated and the remaining time, on standard error.
+
+    Returns
+    -------
+    Trajectory
+        Also where the run ends early, by contact, by Ctrl-C or because a step had no solution: its ``status`` says so.
+
+    Raises
+    ------
+    StepError
+        For a step longer than the run, or one that turns a body by h Omega >= 1, for which (128) has no solution.
+    ContactError
+        Where the bodies overlap at the start.
+    InputError
+        For anything else that cannot be.
+
+    Warns
+    -----
+    StepWarning
+        For a step above 1/20 of the fastest turn.
+    EndWarning
+        Where the run ends early by itself.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> system, state = ba.catalogue.load("didymos")
+    >>> run = ba.propagate(system, state, duration=1 * u.day, integrator=ba.LGVI(step=40 * u.s))
+    >>> run.status, run.steps
+    ('completed', 2160)
+    """
+    _check_kinds(system, state, integrator)
+    end = float(to_si(duration, "s", "duration", sign="positive"))
+    interval = None if save_every is None else float(to_si(save_every, "s", "save_every", sign="positive"))
+    segments = schedule(end, integrator.step.value, interval)
+    _check_turns(system, state, integrator, segments[0].step)
+    run = _Run(system, state, integrator, segments)
+    with _bar(end, progress) as show:
+        run.go(show)
+    return run.trajectory()
+
+
+def schedule(end: float, step: float, interval: float | None) -> list[Segment]:
+    """Return the segments of a run: whole saving intervals, then what remains, each in equal steps up to ``step``."""
+    if step > end * (1 + SLACK):
+        raise StepError(
+            f"step: {step:g} s is longer than the run of {end:g} s: give a smaller step or a longer duration"
+        )
+    if interval is None:
+        count = ceil(end / step * (1 - SLACK))
+        stride = _stride(count)
+        whole, rest = divmod(count, stride)
+        segments = [Segment(end / count, whole * stride, stride), Segment(end / count, rest, max(rest, 1))]
+    else:
+        if interval > end * (1 + SLACK):
+            raise StepError(f"save_every: {interval:g} s is longer than the run of {end:g} s")
+        stride = ceil(interval / step * (1 - SLACK))
+        whole = floor(end / interval * (1 + SLACK))
+        if whole > MOST_ROWS:
+            raise InputError(
+                f"save_every: {interval:g} s would keep {whole} rows, expected at most {MOST_ROWS}: save less often"
+            )
+        remaining = end - whole * interval
+        rest = ceil(remaining / step * (1 - SLACK)) if remaining > SLACK * interval else 0
+        segments = [
+            Segment(interval / stride, whole * stride, stride),
+            Segment(remaining / max(rest, 1), rest, max(rest, 1)),
+        ]
+    return [segment for segment in segments if segment.count]
+
+
+def _stride(count: int) -> int:
+    """Return how many steps lie between rows by default: few enough rows, and a divisor where one is near."""
+    least = ceil(count / MOST_ROWS_BY_DEFAULT)
+    return next((stride for stride in range(least, 2 * least) if count % stride == 0), least)
+
+
+def _check_kinds(system: Any, state: Any, integrator: Any) -> None:
+    """Raise where an argument is another object than it should be."""
+    for name, value, kind in (
+        ("system", system, System),
+        ("state", state, State),
+        ("integrator", integrator, Integrator),
+    ):
+        if not isinstance(value, kind):
+            raise InputError(f"{name}: expected a {kind.__name__}, got {value!r}")
+    if len(state.si.position) != len(system.bodies):
+        raise InputError(f"state: it has {len(state.si.position)} bodies, the system has {len(system.bodies)}")
+
+
+def _check_turns(system: System, state: State, integrator: Integrator, step: float) -> None:
+    """Refuse a step without a solution, and warn of a doubtful one."""
+    for body, spin in zip(system.bodies, np.linalg.norm(state.si.spin, axis=1), strict=True):
+        turn = step * spin
+        if turn >= integrator.largest_turn:
+            raise _turn_error(body.name, float(spin), integrator)
+        if turn > DOUBTFUL_TURN:
+            warnings.warn(
+                f"a step of {step:g} s turns {body.name} by {turn:.2g} rad: its attitude will lag by about "
+                f"{turn**3 / 6:.2g} rad a step; {0.05 * step / turn:.3g} s would turn it by 0.05 rad",
+                StepWarning,
+                stacklevel=3,
+            )
+
+
+def _turn_error(name: str, spin: float, integrator: Integrator) -> StepError:
+    """Return the error of a step that turns a body too far."""
+    largest = integrator.largest_turn / spin
+    return StepError(
+        f"step: {name} spins at {spin:.6g} rad/s (once in {2 * pi / spin / 3600:.4g} h); the implicit equation (128) has "
+        f"a solution only for h Omega < {integrator.largest_turn:g}, so the step must be below {largest:.6g} s, "
+        f"got {integrator.step.value:g} s"
+    )
+
+
+class _Run:
+    """One run under way."""
+
+    def __init__(self, system: System, state: State, integrator: Integrator, segments: list[Segment]) -> None:
+        self.system, self.integrator, self.segments = system, integrator, segments
+        self.start = state
+        self.end = sum(segment.count * segment.step for segment in segments)
+        self.origin = working.barycentre(system, state)
+        self.constants = working.constants(system)
+        self.surfaces = working.surfaces(system)
+        self.state = working.to_working(system, state)
+        self.watch = np.zeros(loop.WATCH_SIZE)
+        self.rows = [self.state[None, : layout.ROW_SIZE].copy()]
+        self.times = [np.zeros(1)]
+        self.code = status.COMPLETED
+        self.pressed: list[int] = []
+        self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
+        self._begin()
+
+    def _begin(self) -> None:
+        """Look at the start: overlap, a potential that is not a number; and keep the references."""
+        energy, *momentum, rotation_error, separation = pair_measure(self.state, self.constants)
+        if separation == 0 or (separation < self.surfaces[0] and pair_touches(self.state, self.surfaces)):
+            primary, secondary = self.system.names
+            raise ContactError(
+                f"state: {primary} and {secondary} overlap at the start, {separation:g} m apart: "
+                "expected surfaces that do not touch; move them further apart"
+            )
+        if not np.isfinite(energy):
+            raise InputError("state: the energy at the start is not a number: look at positions and gravity")
+        self.watch[loop.ENERGY] = energy
+        self.watch[loop.ANGULAR_MOMENTUM : loop.ANGULAR_MOMENTUM + 3] = momentum
+        self.watch[loop.ROTATION_ERROR] = rotation_error
+        self.watch[loop.CLOSEST] = separation
+        self.potential = abs(self.state[layout.POTENTIAL])
+
+    def go(self, show: Any) -> None:
+        """Take all segments, as far as it goes."""
+        with _keyboard() as self.pressed:
+            for segment in self.segments:
+                self._take(segment, show)
+                if self.code != status.COMPLETED or self.pressed:
+                    break
+        if self.steps == 0 and self.code in (status.NO_ROTATION_1, status.NO_ROTATION_2):
+            raise self._turn_error()
+
+    def _take(self, segment: Segment, show: Any) -> None:
+        """Take one segment, in chunks short enough for the keyboard and the progress bar."""
+        rows = np.empty((segment.count // segment.stride, layout.ROW_SIZE))
+        self.rows.append(rows)
+        self.watch[loop.STEPS] = 0
+        chunk = 1000
+        while (
+            (left := segment.count - int(self.watch[loop.STEPS])) and self.code == status.COMPLETED and not self.pressed
+        ):
+            began = time.perf_counter()
+            count = min(chunk, left)
+            self.code = loop.advance(
+                self.integrator.kernel,
+                pair_measure,
+                pair_touches,
+                self.system.gravity.potential,
+                self.system.parameters,
+                self.constants,
+                self.surfaces,
+                self.state,
+                self.watch,
+                segment.step,
+                count,
+                segment.stride,
+                rows,
+            )
+            spent = time.perf_counter() - began
+            self.wall_time += spent
+            chunk = max(1000, int(count * CHUNK_SECONDS / max(spent, 1e-6)))
+            show(self.elapsed + self.watch[loop.STEPS] * segment.step)
+        self._keep(segment)
+
+    def _keep(self, segment: Segment) -> None:
+        """Close a segment: its saved rows with their times, and the last state where that is not one of them."""
+        done = int(self.watch[loop.STEPS])
+        saved = done // segment.stride
+        self.rows[-1] = self.rows[-1][:saved]
+        self.times.append(self.elapsed + np.arange(1, saved + 1) * (segment.stride * segment.step))
+        if done % segment.stride:
+            self.rows.append(self.state[None, : layout.ROW_SIZE].copy())
+            self.times.append(np.array([self.elapsed + done * segment.step]))
+        if self.watch[loop.CLOSEST_STEP]:
+            self.closest_time = self.elapsed + self.watch[loop.CLOSEST_STEP] * segment.step
+            self.watch[loop.CLOSEST_STEP] = 0
+        self.elapsed += done * segment.step
+        self.steps += done
+
+    def trajectory(self) -> Trajectory:
+        """Return what has been computed."""
+        rows, times = np.concatenate(self.rows), np.concatenate(self.times)
+        motion = working.from_rows(self.system, rows, times, self.origin)
+        ended, message = self._end()
+        if ended in ("contact", "failed"):
+            warnings.warn(f"the run ended after {self.elapsed:g} s: {message}", EndWarning, stacklevel=3)
+        return Trajectory(
+            system=self.system,
+            integrator=self.integrator,
+            si=TrajectoryFloats(times, *motion),
+            epoch=self.start.epoch,
+            frame=self.start.frame,
+            status=ended,
+            message=message,
+            steps=self.steps,
+            step=quantity(self.segments[0].step, "s"),
+            wall_time=quantity(self.wall_time, "s"),
+            provenance=provenance(),
+            **self._figures(motion),
+        )
+
+    def _figures(self, motion: working.Motion) -> dict[str, Any]:
+        """Return the largest errors in the ways in which they are reported."""
+        watch = self.watch
+        energy_error = float(watch[loop.ENERGY_ERROR])
+        momentum = float(np.linalg.norm(watch[loop.ANGULAR_MOMENTUM : loop.ANGULAR_MOMENTUM + 3]))
+        masses = np.array([body.si.mass for body in self.system.bodies])
+        linear = np.einsum("i,nij->nj", masses, motion.velocity)
+        speeds = masses @ np.linalg.norm(motion.velocity[0], axis=1)
+        return {
+            "max_relative_energy_error": _over(energy_error, abs(watch[loop.ENERGY])),
+            "max_energy_error": quantity(energy_error, "J"),
+            "max_energy_error_over_potential": _over(energy_error, self.potential),
+            "max_relative_angular_momentum_error": _over(float(watch[loop.MOMENTUM_ERROR]), momentum),
+            "max_relative_linear_momentum_error": _over(
+                float(np.linalg.norm(linear - linear[0], axis=1).max()), speeds
+            ),
+            "max_rotation_error": float(watch[loop.ROTATION_ERROR]),
+            "closest_approach": quantity(float(watch[loop.CLOSEST]), "m"),
+            "closest_approach_time": quantity(self.closest_time, "s"),
+        }
+
+    def _end(self) -> tuple[str, str]:
+        """Return the status and what there is to say about it."""
+        primary, secondary = self.system.names
+        if self.pressed and self.elapsed < self.end * (1 - SLACK):
+            return "interrupted", f"stopped after {self.elapsed:g} s; go on from the last row, run[-1]"
+        if self.code == status.CONTACT:
+            return "contact", f"{secondary} touched {primary} within a step of {self.elapsed:g} s"
+        if self.code == status.NOT_FINITE:
+            return "failed", "the energy is not a number any more: the bodies came too close for this step"
+        if self.code != status.COMPLETED:
+            return "failed", str(self._turn_error())
+        return "completed", ""
+
+    def _turn_error(self) -> StepError:
+        """Return the error of the body that turns too fast now."""
+        secondary = self.code == status.NO_ROTATION_1
+        body = self.system.secondary if secondary else self.system.primary
+        at = layout.MOMENTUM_1 if secondary else layout.MOMENTUM_2
+        return _turn_error(body.name, float(np.linalg.norm(self.state[at : at + 3] / body.si.moments)), self.integrator)
+
+
+def _over(error: float, size: float) -> float:
+    """Return a relative error; the absolute one where there is nothing to compare it with."""
+    return float(error / size) if size > 0 else error
+
+
+@contextmanager
+def _keyboard() -> Iterator[list[int]]:
+    """Give a list that stays empty until Ctrl-C, which then waits for the end of the chunk.
+
+    Only where Python's own handler is in place: in another thread, or under somebody else's, nothing changes.
+    """
+    pressed: list[int] = []
+    ours = threading.current_thread() is threading.main_thread()
+    if not ours or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        yield pressed
+        return
+    signal.signal(signal.SIGINT, lambda number, frame: pressed.append(number))
+    try:
+        yield pressed
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@contextmanager
+def _bar(end: float, progress: bool) -> Iterator[Any]:
+    """Give a function that shows how far the run is; it appears only for runs of more than a second."""
+    if not progress:
+        yield lambda elapsed: None
+        return
+    from tqdm import tqdm
+
+    unit, size = ("d", u.day.to(u.s)) if end > 2 * u.day.to(u.s) else ("s", 1.0)
+    layout_of_bar = "{desc}{percentage:3.0f}%|{bar}| {n:.6g}/{total:.6g} {unit} simulated, {remaining} left"
+    with tqdm(total=end / size, unit=unit, delay=1.0, bar_format=layout_of_bar, leave=False) as bar:
+
+        def show(elapsed: float) -> None:
+            bar.update(elapsed / size - bar.n)
+
+        yield show
+
+
+def provenance() -> dict[str, str]:
+    """Return what is needed to repeat a run: versions, sources, machine, date, and G."""
+    from binaryast import __version__
+
+    return {
+        "binaryast": __version__,
+        "kernels": source_hash(),
+        "python": platform.python_version(),
+        **{name: version(name) for name in ("numpy", "scipy", "numba", "astropy", "h5py")},
+        "machine": f"{platform.machine()} {platform.system()}",
+        "host": platform.node(),
+        "date": datetime.now(UTC).isoformat(timespec="seconds"),
+        "G": repr(constants.G),
+    }

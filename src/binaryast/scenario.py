@@ -1,0 +1,272 @@
+"""Scenario files: a system, its start and how to run it, as TOML with units in texts.
+
+The words are those of the Python interface: ``type`` names a class or a way to make a state, the other keys are its
+arguments.
+"""
+
+import difflib
+import inspect
+import tomllib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import astropy.units as u
+from astropy.time import Time
+from astropy.units import Quantity
+
+from binaryast import gravity, shapes
+from binaryast.bodies import RigidBody
+from binaryast.errors import InputError, ScenarioError, StorageError
+from binaryast.integrators import LGVI, Integrator
+from binaryast.state import RelativeState, State
+from binaryast.system import System
+from binaryast.units import parse, to_si
+from binaryast.values import Value
+
+SHAPES = {kind.__name__: kind for kind in (shapes.Ellipsoid, shapes.Sphere, shapes.Dumbbell, shapes.PointCloud)}
+GRAVITIES = {kind.__name__: kind for kind in (gravity.SecondDegree, gravity.PointPairs, gravity.PointMass)}
+STATES = ("circular_orbit", "from_elements", "inertial", "relative")
+
+
+@dataclass(frozen=True, eq=False)
+class Scenario(Value):
+    """What a scenario file says.
+
+    Attributes
+    ----------
+    name, title : str
+        The file's stem, and one line.
+    system, state : System, State
+        The bodies, their gravity and where they start.
+    integrator : Integrator
+        How to run it.
+    duration, save_every : Quantity
+        How long, and how often to save; ``save_every`` may be None.
+    sources : tuple of dict
+        ``what``, ``source`` and where known ``uncertainty`` and ``note`` of each number.
+    text : str
+        The file itself.
+    """
+
+    name: str
+    title: str
+    system: System
+    state: State
+    integrator: Integrator
+    duration: Quantity
+    save_every: Quantity | None
+    sources: tuple[dict[str, str], ...] = field(repr=False)
+    text: str = field(repr=False)
+
+
+def load(path: str | Path) -> Scenario:
+    """Read a scenario file.
+
+    Parameters
+    ----------
+    path : path
+        A TOML file; ``binaryast show NAME --toml`` prints one to start from.
+
+    Returns
+    -------
+    Scenario
+
+    Raises
+    ------
+    StorageError
+        Where there is no such file.
+    ScenarioError
+        Where it is not a scenario: the key, what was found and what was expected.
+    """
+    path = Path(path)
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise StorageError(f"{path}: no such file") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise StorageError(f"{path}: cannot be read as text: {error}") from None
+    return loads(text, name=path.stem, where=str(path))
+
+
+def loads(text: str, *, name: str, where: str) -> Scenario:
+    """Return the scenario that a text says; ``where`` is what its errors begin with."""
+    try:
+        tables = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ScenarioError(f"{where}: not TOML: {error}") from None
+    try:
+        return _scenario(tables, name, text)
+    except InputError as error:
+        raise ScenarioError(f"{where}: {error}") from None
+
+
+def _scenario(tables: dict[str, Any], name: str, text: str) -> Scenario:
+    """Build everything that the tables say."""
+    _known(tables, ("title", "bodies", "gravity", "state", "run", "sources"), "")
+    _needed(tables, ("bodies", "state", "run"), "")
+    bodies = tables["bodies"]
+    if not isinstance(bodies, list) or not all(isinstance(body, dict) for body in bodies):
+        raise InputError("bodies: expected two tables [[bodies]], the primary first")
+    system = System([_body(body, f"bodies[{i}]") for i, body in enumerate(bodies)], _gravity(_table(tables, "gravity")))
+    run = _table(tables, "run")
+    _known(run, ("duration", "step", "save_every"), "run.")
+    _needed(run, ("duration", "step"), "run.")
+    return Scenario(
+        name=name,
+        title=_text(tables.get("title", name), "title"),
+        system=system,
+        state=_state(_table(tables, "state"), system),
+        integrator=LGVI(_quantity(run["step"], "s", "run.step")),
+        duration=_quantity(run["duration"], "s", "run.duration"),
+        save_every=_quantity(run["save_every"], "s", "run.save_every") if "save_every" in run else None,
+        sources=tuple(_source(source, f"sources[{i}]") for i, source in enumerate(tables.get("sources", []))),
+        text=text,
+    )
+
+
+def _body(table: dict[str, Any], where: str) -> RigidBody:
+    """Return a body."""
+    _known(table, ("name", "shape", "mass", "density", "gm", "inertia"), f"{where}.")
+    _needed(table, ("name", "shape"), f"{where}.")
+    units = {"mass": "kg", "density": "kg / m3", "gm": "m3 / s2", "inertia": "kg m2"}
+    given = {key: _text(table[key], f"{where}.{key}") for key in units if key in table}
+    shape = _typed(_table(table, "shape", f"{where}."), SHAPES, f"{where}.shape")
+    quantities = {key: parse(text, units[key], f"{where}.{key}") for key, text in given.items()}
+    return RigidBody(table["name"], shape, **quantities)
+
+
+def _gravity(table: dict[str, Any]) -> gravity.Gravity:
+    """Return the model; second degree where the file says nothing."""
+    result: gravity.Gravity = _typed(table or {"type": "SecondDegree"}, GRAVITIES, "gravity")
+    return result
+
+
+def _typed(table: dict[str, Any], kinds: dict[str, Any], where: str) -> Any:
+    """Return the object of a class named by ``type``, whose other keys are its arguments."""
+    kind = kinds[_choice(table, kinds, where)]
+    arguments = {key: value for key, value in table.items() if key != "type"}
+    return _call(kind, {}, arguments, where)
+
+
+def _state(table: dict[str, Any], system: System) -> State:
+    """Return the start, made in one of the ways of `STATES`."""
+    kind = _choice(table, STATES, "state")
+    arguments = {key: value for key, value in table.items() if key != "type"}
+    if "epoch" in arguments:
+        arguments["epoch"] = _epoch(arguments["epoch"])
+    if kind == "inertial":
+        return _call(State, {}, arguments, "state")  # type: ignore[no-any-return]
+    if kind == "relative":
+        when = {key: arguments.pop(key) for key in ("epoch", "frame") if key in arguments}
+        relative: RelativeState = _call(RelativeState, {}, arguments, "state")
+        return relative.to_state(system, **when)
+    for key in ("spins", "pole"):
+        if key in arguments:
+            arguments[key] = _several(arguments[key], f"state.{key}")
+    return _call(getattr(State, kind), {"system": system}, arguments, "state")  # type: ignore[no-any-return]
+
+
+def _call(function: Callable[..., Any], ready: dict[str, Any], arguments: dict[str, Any], where: str) -> Any:
+    """Call a constructor with arguments from a file, after a look at their names."""
+    parameters = [p for p in inspect.signature(function).parameters.values() if p.name not in ready]
+    _known(arguments, [p.name for p in parameters], f"{where}.")
+    _needed(arguments, [p.name for p in parameters if p.default is inspect.Parameter.empty], f"{where}.")
+    try:
+        return function(**ready, **arguments)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _several(value: Any, where: str) -> Any:
+    """Return a list of texts as quantities, as far as they are some: spins and poles."""
+    if not isinstance(value, list):
+        raise InputError(f"{where}: expected a list, got {value!r}")
+    return [_any_quantity(item, f"{where}[{i}]") if isinstance(item, str) else item for i, item in enumerate(value)]
+
+
+def _any_quantity(text: str, where: str) -> Any:
+    """Return a quantity of whatever kind the text is, or the word ``synchronous``."""
+    if text == "synchronous":
+        return text
+    if text.lstrip().startswith("["):
+        return parse(text, "rad / s", where)
+    try:
+        return Quantity(text)
+    except (TypeError, ValueError):
+        raise InputError(
+            f'{where}: {text!r} is not understood: expected such as "2.26 h", "1e-4 rad / s" or "synchronous"'
+        ) from None
+
+
+def _quantity(value: Any, unit: str, where: str) -> Quantity:
+    """Return a quantity of a known kind."""
+    if not isinstance(value, str):
+        raise InputError(f'{where}: expected a text with a unit such as "{value} {unit}", got {value!r}')
+    return to_si(parse(value, unit, where), unit, where, sign="positive") << u.Unit(unit)
+
+
+def _epoch(value: Any) -> Time:
+    """Return an epoch: an ISO date and time, followed by its scale, TDB by default."""
+    words = str(value).split()
+    scale = words.pop().lower() if len(words) > 1 and words[-1].isalpha() else "tdb"
+    try:
+        return Time("T".join(words), scale=scale)
+    except ValueError as error:
+        raise InputError(f'state.epoch: {value!r}: expected such as "2022-09-26T23:14:24 UTC" ({error})') from None
+
+
+def _table(tables: dict[str, Any], key: str, where: str = "") -> dict[str, Any]:
+    """Return a table, empty where it is missing."""
+    table = tables.get(key, {})
+    if not isinstance(table, dict):
+        raise InputError(f"{where}{key}: expected a table, got {table!r}")
+    return table
+
+
+def _text(value: Any, where: str) -> str:
+    if not isinstance(value, str):
+        raise InputError(f"{where}: expected a text in quotes, with a unit if it is a quantity, got {value!r}")
+    return value
+
+
+def _source(table: Any, where: str) -> dict[str, str]:
+    """Return where a number comes from."""
+    if not isinstance(table, dict):
+        raise InputError(f"{where}: expected a table, got {table!r}")
+    _known(table, ("what", "source", "uncertainty", "note"), f"{where}.")
+    _needed(table, ("what", "source"), f"{where}.")
+    return {key: _text(value, f"{where}.{key}") for key, value in table.items()}
+
+
+def _choice(table: dict[str, Any], choices: Iterable[str], where: str) -> str:
+    """Return the value of ``type``, which must be one of the choices."""
+    if "type" not in table:
+        raise InputError(f"{where}.type is missing: expected one of {', '.join(choices)}")
+    kind = _text(table["type"], f"{where}.type")
+    if kind not in choices:
+        raise InputError(
+            f"{where}.type: {kind!r} is not known{_nearest(kind, choices)}; expected one of {', '.join(choices)}"
+        )
+    return kind
+
+
+def _known(table: dict[str, Any], keys: Iterable[str], where: str) -> None:
+    """Raise for the first key that is not known, naming the nearest."""
+    keys = list(keys)
+    for key in table:
+        if key not in keys:
+            raise InputError(f"{where}{key}: unknown key{_nearest(key, keys)}; known are {', '.join(keys) or 'none'}")
+
+
+def _needed(table: dict[str, Any], keys: Iterable[str], where: str) -> None:
+    for key in keys:
+        if key not in table:
+            raise InputError(f"{where}{key} is missing")
+
+
+def _nearest(word: str, words: Iterable[str]) -> str:
+    """Return a question that names the nearest word, if one is near."""
+    near = difflib.get_close_matches(word, list(words), n=1, cutoff=0.5)
+    return f": did you mean {near[0]!r}?" if near else ""

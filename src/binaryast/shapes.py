@@ -1,0 +1,231 @@
+"""The geometry of a body: what it encloses, how mass is spread in it, and where its surface is.
+
+A shape has a frame of its own; `binaryast.RigidBody` finds the mass centre and the principal axes in it.
+"""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from math import pi
+from typing import Any
+
+import numpy as np
+from astropy.units import Quantity
+
+from binaryast.errors import InputError
+from binaryast.units import Floats, checked, numbers, quantity, to_si
+from binaryast.values import Value
+
+
+class Shape(Value, ABC):
+    """What every shape says about itself, as plain SI floats in the shape's own frame.
+
+    Attributes
+    ----------
+    volume : float or None
+        Volume [m3]; None where there is none to speak of.
+    centre : ndarray
+        Mass centre (3,) [m].
+    specific_inertia : ndarray
+        Inertia matrix about the mass centre over the mass (3, 3) [m2].
+    points : tuple of ndarray or None
+        Positions (k, 3) [m] and fractions of the mass (k,) of point masses with the same gravity, where there are some.
+    pieces : list of tuple of ndarray
+        The surface as ellipsoids: centre (3,) and semi-axes (3,) [m] of each; empty for what never touches.
+    """
+
+    volume: float | None = None
+    points: tuple[Floats, Floats] | None = None
+    centre: Floats
+    specific_inertia: Floats
+
+    @property
+    @abstractmethod
+    def pieces(self) -> list[tuple[Floats, Floats]]:
+        """The surface as ellipsoids."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ellipsoid(Shape):
+    """A homogeneous ellipsoid.
+
+    Parameters
+    ----------
+    a, b, c : Quantity
+        Semi-axes along x, y and z (length). They need not be sorted.
+
+    Raises
+    ------
+    UnitError, InputError
+        For a value that is not a positive length.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> float(ba.Ellipsoid(425.5 * u.m, 424.5 * u.m, 310 * u.m).volume)  # m3
+    234544869.52...
+    """
+
+    a: Quantity
+    b: Quantity
+    c: Quantity
+
+    def __post_init__(self) -> None:
+        name = type(self).__name__
+        axes = np.array([to_si(getattr(self, axis), "m", f"{name}: {axis}", sign="positive") for axis in "abc"])
+        squares = axes**2
+        self._set(
+            a=quantity(axes[0], "m"),
+            b=quantity(axes[1], "m"),
+            c=quantity(axes[2], "m"),
+            volume=4 / 3 * pi * float(np.prod(axes)),
+            centre=np.zeros(3),
+            specific_inertia=np.diag(squares.sum() - squares) / 5,
+        )
+
+    @property
+    def pieces(self) -> list[tuple[Floats, Floats]]:
+        """The surface as ellipsoids."""
+        return [(self.centre, np.array([self.a.value, self.b.value, self.c.value]))]
+
+
+@dataclass(frozen=True, eq=False)
+class Sphere(Shape):
+    """A homogeneous sphere.
+
+    Parameters
+    ----------
+    radius : Quantity
+        Radius (length).
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> ba.Sphere(1 * u.km).radius
+    <Quantity 1000. m>
+    """
+
+    radius: Quantity
+
+    def __post_init__(self) -> None:
+        radius = float(to_si(self.radius, "m", "Sphere: radius", sign="positive"))
+        self._set(
+            radius=quantity(radius, "m"),
+            volume=4 / 3 * pi * radius**3,
+            centre=np.zeros(3),
+            specific_inertia=np.eye(3) * (2 / 5 * radius**2),
+            points=(np.zeros((1, 3)), np.ones(1)),
+        )
+
+    @property
+    def pieces(self) -> list[tuple[Floats, Floats]]:
+        """The surface as ellipsoids."""
+        return [(self.centre, np.full(3, self.radius.value))]
+
+
+@dataclass(frozen=True, eq=False)
+class Dumbbell(Shape):
+    """Two equal homogeneous spheres on a massless rod along x: the body of section 5 of the paper.
+
+    Its surface is the two spheres; the rod stops nothing.
+
+    Parameters
+    ----------
+    length : Quantity
+        Distance between the centres of the spheres (length).
+    radius : Quantity
+        Radius of each sphere (length), at most half of ``length``. The paper's is a tenth of it.
+
+    References
+    ----------
+    T. Lee, M. Leok, N. H. McClamroch, CMAME 196 (2007) 2907-2924, section 5.1 and Fig. 3.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> body = ba.RigidBody("first", ba.Dumbbell(0.25 * u.m, 0.025 * u.m), mass=1.5 * u.kg)
+    >>> print(body.inertia)
+    [0.000375  0.0238125 0.0238125] kg m2
+    """
+
+    length: Quantity
+    radius: Quantity
+
+    def __post_init__(self) -> None:
+        length = float(to_si(self.length, "m", "Dumbbell: length", sign="positive"))
+        radius = float(to_si(self.radius, "m", "Dumbbell: radius", sign="positive"))
+        if 2 * radius > length:
+            raise InputError(
+                f"Dumbbell: radius {radius:g} m is more than half the length {length:g} m: the spheres would overlap"
+            )
+        along, across = 2 / 5 * radius**2, 2 / 5 * radius**2 + length**2 / 4
+        self._set(
+            length=quantity(length, "m"),
+            radius=quantity(radius, "m"),
+            volume=8 / 3 * pi * radius**3,
+            centre=np.zeros(3),
+            specific_inertia=np.diag([along, across, across]),
+            points=(np.array([[length / 2, 0, 0], [-length / 2, 0, 0]]), np.array([0.5, 0.5])),
+        )
+
+    @property
+    def pieces(self) -> list[tuple[Floats, Floats]]:
+        """The surface as ellipsoids."""
+        if self.points is None:  # never: set by the constructor
+            return []
+        return [(centre, np.full(3, self.radius.value)) for centre in self.points[0]]
+
+
+@dataclass(frozen=True, eq=False)
+class PointCloud(Shape):
+    """Point masses held together rigidly. A cloud has no surface: it never touches anything.
+
+    Parameters
+    ----------
+    positions : Quantity
+        Positions (k, 3) in the shape's own frame (length). Neither centred nor turned: the body does that.
+    weights : array-like, optional
+        Mass of each point (k,), relative to the others; equal by default. The mass itself is the body's.
+
+    Raises
+    ------
+    InputError
+        For fewer than one point, a weight that is not positive, or values that are not finite.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> cloud = ba.PointCloud([[1, 0, 0], [-1, 0, 0], [0, 2, 0], [0, -2, 0]] * u.m)
+    >>> print(ba.RigidBody("cross", cloud, mass=4 * u.kg).inertia)
+    [ 8.  2. 10.] kg m2
+    """
+
+    positions: Quantity
+    weights: Any = None
+
+    def __post_init__(self) -> None:
+        count = len(self.positions) if np.ndim(self.positions) else 0
+        if count == 0:
+            raise InputError(f"PointCloud: positions: expected an array of shape (k, 3), got {self.positions!r}")
+        positions = to_si(self.positions, "m", "PointCloud: positions", shape=(count, 3))
+        weights = np.ones(count) if self.weights is None else numbers(self.weights, "PointCloud: weights", (count,))
+        checked(weights, "PointCloud: weights", (count,), "positive")
+        fractions = weights / weights.sum()
+        centre = fractions @ positions
+        arms = positions - centre
+        second = (arms * fractions[:, None]).T @ arms
+        self._set(
+            positions=quantity(positions, "m"),
+            weights=weights,
+            centre=centre,
+            specific_inertia=np.trace(second) * np.eye(3) - second,
+            points=(positions, fractions),
+        )
+
+    @property
+    def pieces(self) -> list[tuple[Floats, Floats]]:
+        """The surface as ellipsoids: none."""
+        return []

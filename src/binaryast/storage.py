@@ -1,0 +1,224 @@
+"""HDF5 files: datasets and attributes by name, and the objects that they came from.
+
+Every dataset is in SI and carries its unit. A file is made in memory first and appears under its name in one move, so
+there is never half of one. ``format_version`` is raised when a reader of the previous version would misread the file.
+"""
+
+import contextlib
+import io
+import os
+import tempfile
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+from astropy.time import Time
+from astropy.units import Quantity
+
+from binaryast import bodies, gravity, integrators, shapes, system
+from binaryast.errors import BinaryastError, StorageError
+from binaryast.values import Value
+
+FORMAT = "binaryast trajectory"
+FORMAT_VERSION = 1
+CLASSES: dict[str, type[Value]] = {
+    kind.__name__: kind
+    for module in (bodies, gravity, integrators, shapes, system)
+    for kind in vars(module).values()
+    if isinstance(kind, type) and issubclass(kind, Value)
+}
+
+
+class Content(NamedTuple):
+    """What a file holds."""
+
+    datasets: dict[str, Any]
+    attributes: dict[str, Any]
+    values: dict[str, Any]
+    provenance: dict[str, str]
+
+
+def refuse(path: Path, *, force: bool) -> None:
+    """Raise, before any work is done, where a file could not be written under this name.
+
+    Raises
+    ------
+    StorageError
+        Where it exists and ``force`` is not set, is a folder, or its folder is missing or cannot be written.
+    """
+    if path.is_dir():
+        raise StorageError(f"{path} is a folder: give the name of a file")
+    if path.exists() and not force:
+        raise StorageError(
+            f"{path} exists already: choose another name, or allow it to be replaced (--force, force=True)"
+        )
+    folder = path.parent
+    if not folder.is_dir():
+        raise StorageError(f"{path}: there is no folder {folder}: make it first")
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise StorageError(f"{path}: nothing can be written in {folder.resolve()}: {_reason(error)}") from None
+
+
+def replace_whole(path: Path, data: bytes, *, force: bool) -> Path:
+    """Write a file under a temporary name, and move it to its own only when it is complete.
+
+    Raises
+    ------
+    StorageError
+        Where it cannot be written; what was there before is untouched.
+    """
+    refuse(path, force=force)
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.chmod(temporary, 0o666 & ~_umask())
+        os.replace(temporary, path)
+    except OSError as error:
+        raise StorageError(
+            f"{path}: could not be written ({len(data) / 1e6:.3g} MB): {_reason(error)}; nothing was changed"
+        ) from None
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            os.remove(temporary)
+    return path
+
+
+def _umask() -> int:
+    """Return the process's file mode mask, which can only be read by setting it."""
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _reason(error: OSError) -> str:
+    return (error.strerror or str(error)).lower()
+
+
+def write(path: Path, content: Content, *, force: bool = False) -> Path:
+    """Write an HDF5 file, whole or not at all; see `replace_whole` for what it raises."""
+    refuse(path, force=force)
+    memory = io.BytesIO()
+    with h5py.File(memory, "w") as file:
+        file.attrs["format"] = FORMAT
+        file.attrs["format_version"] = FORMAT_VERSION
+        for name, data in content.datasets.items():
+            _put(file, name, data)
+        for name, attribute in content.attributes.items():
+            file.attrs[name] = attribute
+        for name, value in content.values.items():
+            _put(file, name, value)
+        _put(file, "provenance", content.provenance)
+    return replace_whole(path, memory.getvalue(), force=force)
+
+
+def read(path: Path) -> Content:
+    """Read an HDF5 file.
+
+    Raises
+    ------
+    StorageError
+        Where it is missing, broken, or not one of ours.
+    """
+    if not path.is_file():
+        raise StorageError(f"{path}: no such file")
+    try:
+        with h5py.File(path, "r") as file:
+            if file.attrs.get("format") != FORMAT:
+                raise StorageError(f"{path}: an HDF5 file, but not one that binaryast wrote")
+            if file.attrs["format_version"] > FORMAT_VERSION:
+                raise StorageError(
+                    f"{path}: format version {file.attrs['format_version']}, expected at most {FORMAT_VERSION}: "
+                    "a newer binaryast wrote it; install that one"
+                )
+            datasets = {name: item[()] for name, item in file.items() if isinstance(item, h5py.Dataset)}
+            values = {name: _get(item) for name, item in file.items() if isinstance(item, h5py.Group)}
+            attributes = dict(file.attrs)
+    except StorageError:
+        raise
+    except BinaryastError as error:
+        raise broken(path, str(error)) from None
+    except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
+        raise broken(path, str(error).split("\n")[0]) from None
+    return Content(datasets, attributes, values, values.pop("provenance", {}))
+
+
+def broken(path: Path, reason: str) -> StorageError:
+    """Return the error of a file that cannot be read."""
+    return StorageError(f"{path}: not a readable HDF5 file of binaryast: {reason}; run again to make it anew")
+
+
+def _put(group: h5py.Group, name: str, value: Any) -> None:
+    """Put one value under a name: an attribute, a dataset, or a group for a `Value`, an epoch, a sequence or a dict."""
+    if value is None:
+        return
+    if isinstance(value, Quantity):
+        dataset = group.create_dataset(name, data=value.si.value)
+        dataset.attrs["unit"] = value.si.unit.to_string()
+    elif isinstance(value, np.ndarray):
+        group.create_dataset(name, data=value).attrs["unit"] = ""
+    elif isinstance(value, Time):
+        _put_group(group, name, "Time", {"jd1": value.tdb.jd1, "jd2": value.tdb.jd2})
+    elif isinstance(value, Value):
+        _put_group(group, name, type(value).__name__, value.arguments())
+    elif isinstance(value, dict):
+        _put_group(group, name, "dict", value)
+    elif isinstance(value, Sequence) and not isinstance(value, str):
+        _put_group(group, name, "tuple", {str(i): item for i, item in enumerate(value)})
+    elif callable(value):
+        function = getattr(value, "py_func", value)
+        _put_group(group, name, "function", {"module": function.__module__, "name": function.__qualname__})
+    else:
+        group.attrs[name] = value
+
+
+def _put_group(group: h5py.Group, name: str, kind: str, items: dict[str, Any]) -> None:
+    inner = group.create_group(name)
+    inner.attrs["class"] = kind
+    for key, item in items.items():
+        _put(inner, key, item)
+
+
+def _get(group: h5py.Group) -> Any:
+    """Return what `_put_group` put into a group."""
+    kind = str(group.attrs["class"])
+    items: dict[str, Any] = {key: _plain(value) for key, value in group.attrs.items() if key != "class"}
+    for key, item in group.items():
+        items[key] = _get(item) if isinstance(item, h5py.Group) else _array(item)
+    if kind == "dict":
+        return items
+    if kind == "tuple":
+        return tuple(items[str(i)] for i in range(len(items)))
+    if kind == "Time":
+        return Time(items["jd1"], items["jd2"], format="jd", scale="tdb")
+    if kind == "function":
+        return _function(items["module"], items["name"])
+    if kind not in CLASSES:
+        raise KeyError(f"it holds a {kind}, which this version does not know")
+    return CLASSES[kind](**items)
+
+
+def _array(dataset: h5py.Dataset) -> Any:
+    unit = dataset.attrs["unit"]
+    return Quantity(dataset[()], unit) if unit else dataset[()]
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _function(module: str, name: str) -> Callable[..., Any] | str:
+    """Return a user's function where it can be imported, else its name."""
+    try:
+        function: Callable[..., Any] = getattr(import_module(module), name)
+    except (ImportError, AttributeError):
+        return f"{module}.{name}"
+    return function

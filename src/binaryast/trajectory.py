@@ -1,0 +1,379 @@
+"""The result of a propagation: arrays with time first, what should be conserved and how well it was, and how it ended."""
+
+import operator
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from astropy.table import QTable
+from astropy.time import Time, TimeDelta
+from astropy.units import Quantity
+from scipy.spatial.transform import Rotation
+
+from binaryast import storage
+from binaryast.errors import CheckError, InputError
+from binaryast.integrators import Integrator
+from binaryast.state import RelativeState, State
+from binaryast.system import System
+from binaryast.units import Floats, quantity
+from binaryast.values import Value
+
+
+class TrajectoryFloats(NamedTuple):
+    """The arrays of a trajectory as plain SI floats."""
+
+    time: Floats
+    position: Floats
+    velocity: Floats
+    attitude: Floats
+    spin: Floats
+    potential_energy: Floats
+
+
+FIGURES = {  # of the whole run, over every step; with their units
+    "max_relative_energy_error": "",
+    "max_energy_error": "J",
+    "max_energy_error_over_potential": "",
+    "max_relative_angular_momentum_error": "",
+    "max_relative_linear_momentum_error": "",
+    "max_rotation_error": "",
+    "closest_approach": "m",
+    "closest_approach_time": "s",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory(Value):
+    """What `binaryast.propagate` returns.
+
+    ``run[i]`` is a `State`, ``run[a:b]`` a `Trajectory` of those rows; `len` is the number of rows.
+
+    Attributes
+    ----------
+    time : Quantity
+        Since the start (N,) [s].
+    position, velocity : Quantity
+        Of the mass centres, inertial (N, n, 3).
+    attitude : ndarray
+        Body frame -> inertial (N, n, 3, 3).
+    spin : Quantity
+        Each in its own body's frame (N, n, 3).
+    relative : RelativeState
+        X, V, R, Omega, Omega2 of the paper, time first.
+    energy, potential_energy, translational_energy, rotational_energy : Quantity
+        About the barycentre (N,) [J].
+    linear_momentum, angular_momentum : Quantity
+        (N, 3) [kg m/s], and about the barycentre [kg m2/s].
+    rotation_error : ndarray
+        Frobenius norm ||I - R^T R||, the larger of both attitudes (N,).
+    status : str
+        ``completed``, ``contact``, ``interrupted`` or ``failed``; ``message`` says more.
+    steps, step, wall_time : int, Quantity, Quantity
+        Steps taken, the step used (the largest one up to the integrator's that divides the run), and the time it took.
+    max_relative_energy_error, max_energy_error, max_energy_error_over_potential : float, Quantity, float
+        Largest |E - E0| over every step: over |E0|, itself, and over |U0|. Spin energy hides the orbit in the first.
+    max_relative_angular_momentum_error, max_relative_linear_momentum_error, max_rotation_error : float
+        Over every step; linear momentum over the saved rows and relative to sum m |v|.
+    closest_approach, closest_approach_time : Quantity
+        Smallest distance of the mass centres over every step, and when.
+    integrator, system, epoch, frame, provenance
+        What was run, and on what.
+    si : TrajectoryFloats
+        The arrays as plain floats.
+    """
+
+    system: System
+    integrator: Integrator
+    si: TrajectoryFloats = field(repr=False)
+    epoch: Time | None
+    frame: str
+    status: str
+    message: str
+    steps: int
+    step: Quantity
+    wall_time: Quantity
+    max_relative_energy_error: float
+    max_energy_error: Quantity
+    max_energy_error_over_potential: float
+    max_relative_angular_momentum_error: float
+    max_relative_linear_momentum_error: float
+    max_rotation_error: float
+    closest_approach: Quantity
+    closest_approach_time: Quantity
+    provenance: dict[str, str] = field(repr=False)
+
+    def __post_init__(self) -> None:
+        for array in self.si:
+            array.flags.writeable = False
+
+    def __len__(self) -> int:
+        return len(self.si.time)
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, slice):
+            return replace(self, si=TrajectoryFloats(*(array[index] for array in self.si)))
+        try:
+            index = operator.index(index)
+        except TypeError:
+            raise InputError(f"run[{index!r}]: expected a whole number or a slice") from None
+        if not -len(self) <= index < len(self):
+            raise IndexError(f"run[{index}]: there are {len(self)} rows")
+        epoch = None if self.epoch is None else self.epoch + TimeDelta(self.time[index])
+        return State(
+            self.position[index], self.velocity[index], self.attitude[index], self.spin[index], epoch, self.frame
+        )
+
+    @property
+    def time(self) -> Quantity:
+        """Since the start (N,)."""
+        return quantity(self.si.time, "s")
+
+    @property
+    def position(self) -> Quantity:
+        """Of the mass centres, inertial (N, n, 3)."""
+        return quantity(self.si.position, "m")
+
+    @property
+    def velocity(self) -> Quantity:
+        """Of the mass centres, inertial (N, n, 3)."""
+        return quantity(self.si.velocity, "m / s")
+
+    @property
+    def attitude(self) -> Floats:
+        """Body frame -> inertial (N, n, 3, 3)."""
+        return self.si.attitude
+
+    @property
+    def spin(self) -> Quantity:
+        """Each in its own body's frame (N, n, 3)."""
+        return quantity(self.si.spin, "rad / s")
+
+    @cached_property
+    def relative(self) -> RelativeState:
+        """The paper's reduced variables (34)-(39), time first."""
+        return RelativeState.from_arrays(*self.si[1:5])
+
+    @property
+    def separation(self) -> Quantity:
+        """Distance of the mass centres (N,)."""
+        return quantity(np.linalg.norm(self.si.position[:, 1] - self.si.position[:, 0], axis=-1), "m")
+
+    @property
+    def potential_energy(self) -> Quantity:
+        """U (N,)."""
+        return quantity(self.si.potential_energy, "J")
+
+    @property
+    def translational_energy(self) -> Quantity:
+        """Kinetic energy of the mass centres about the barycentre (N,)."""
+        relative = self.si.velocity[:, 1] - self.si.velocity[:, 0]
+        return quantity(0.5 * self.system.reduced_mass * np.sum(relative**2, axis=-1), "J")
+
+    @property
+    def rotational_energy(self) -> Quantity:
+        """Of both bodies together (N,)."""
+        moments = np.array([body.si.moments for body in self.system.bodies])
+        return quantity(0.5 * np.sum(moments * self.si.spin**2, axis=(-2, -1)), "J")
+
+    @property
+    def energy(self) -> Quantity:
+        """Total energy about the barycentre (N,)."""
+        return self.translational_energy + self.rotational_energy + self.potential_energy
+
+    @property
+    def energy_of_orbit(self) -> Quantity:
+        """Translational and potential energy (N,): below zero the pair is bound, but for what its spins can give."""
+        return self.translational_energy + self.potential_energy
+
+    @property
+    def linear_momentum(self) -> Quantity:
+        """The paper's gamma_T (N, 3)."""
+        masses = np.array([body.si.mass for body in self.system.bodies])
+        return quantity(np.einsum("i,nij->nj", masses, self.si.velocity), "kg m / s")
+
+    @property
+    def angular_momentum(self) -> Quantity:
+        """The paper's pi_T, about the barycentre, inertial (N, 3)."""
+        moments = np.array([body.si.moments for body in self.system.bodies])
+        spins = np.einsum("nbij,nbj->ni", self.si.attitude, moments * self.si.spin)
+        x = self.si.position[:, 1] - self.si.position[:, 0]
+        v = self.si.velocity[:, 1] - self.si.velocity[:, 0]
+        return quantity(self.system.reduced_mass * np.cross(x, v) + spins, "kg m2 / s")
+
+    @property
+    def rotation_error(self) -> Floats:
+        """||I - R^T R||, the larger of both attitudes (N,)."""
+        r = self.si.attitude
+        errors = np.linalg.norm(np.eye(3) - np.swapaxes(r, -1, -2) @ r, axis=(-2, -1))
+        return np.asarray(errors.max(axis=1))
+
+    def check(
+        self, *, energy: float | None = None, momentum: float | None = None, rotation: float | None = None
+    ) -> "Trajectory":
+        """Raise where an error is larger than the figure given; return the run itself otherwise.
+
+        Parameters
+        ----------
+        energy : float
+            For `max_relative_energy_error`.
+        momentum : float
+            For `max_relative_angular_momentum_error` and `max_relative_linear_momentum_error`.
+        rotation : float
+            For `max_rotation_error`.
+
+        Raises
+        ------
+        CheckError
+            Naming the figure; also where the run did not complete.
+        """
+        if self.status != "completed":
+            raise CheckError(f"the run did not complete: {self.status}: {self.message}")
+        for name, bound in (
+            ("max_relative_energy_error", energy),
+            ("max_relative_angular_momentum_error", momentum),
+            ("max_relative_linear_momentum_error", momentum),
+            ("max_rotation_error", rotation),
+        ):
+            figure = getattr(self, name)
+            if bound is not None and not figure <= bound:
+                raise CheckError(f"{name} is {figure:.4g}, expected at most {bound:g}: try a smaller step")
+        return self
+
+    def summary(self) -> str:
+        """Return a few lines: how the run ended, its cost, and how well it conserved what it should."""
+        primary, secondary = self.system.names
+        first, last = self.separation[0], self.separation[-1]
+        speed = f", {self.wall_time.value / self.steps * 1e6:.2f} us each" if self.steps else ""
+        lines = [
+            f"{primary} and {secondary}: {self.status}" + (f": {self.message}" if self.message else ""),
+            f"  {_span(self.si.time[-1])} in {self.steps} steps of {self.step.value:g} s, {len(self)} rows kept; "
+            f"{self.wall_time.value:.2g} s{speed}",
+            f"  separation {first.value:.6g} m at the start, {last.value:.6g} m at the end, "
+            f"closest {self.closest_approach.value:.6g} m after {_span(self.closest_approach_time.value)}",
+            f"  largest errors: energy {self.max_relative_energy_error:.4e} of |E0| "
+            f"({self.max_energy_error_over_potential:.2e} of |U0|), "
+            f"angular momentum {self.max_relative_angular_momentum_error:.1e}, "
+            f"rotation {self.max_rotation_error:.1e}",
+        ]
+        return "\n".join(lines)
+
+    def to_table(self) -> QTable:
+        """Return the run as an astropy table: one row a time, a column a number; attitudes as quaternions, scalar last.
+
+        Examples
+        --------
+        >>> import astropy.units as u
+        >>> import binaryast as ba
+        >>> system, state = ba.catalogue.load("didymos")
+        >>> run = ba.propagate(system, state, duration=1 * u.h, integrator=ba.LGVI(40 * u.s), save_every=10 * u.min)
+        >>> table = run.to_table()
+        >>> len(table), table.colnames[:3]
+        (7, ['time', 'Didymos_x', 'Didymos_y'])
+        """
+        columns: dict[str, Any] = {"time": self.time}
+        for i, name in enumerate(self.system.names):
+            quaternion = Rotation.from_matrix(self.si.attitude[:, i]).as_quat()
+            for j, axis in enumerate("xyz"):
+                columns[f"{name}_{axis}"] = self.position[:, i, j]
+                columns[f"{name}_v{axis}"] = self.velocity[:, i, j]
+                columns[f"{name}_spin_{axis}"] = self.spin[:, i, j]
+            for j, axis in enumerate("xyzw"):
+                columns[f"{name}_q{axis}"] = quaternion[:, j]
+        order = ["time"] + [
+            f"{name}_{part}"
+            for name in self.system.names
+            for part in ("x", "y", "z", "vx", "vy", "vz", "qx", "qy", "qz", "qw", "spin_x", "spin_y", "spin_z")
+        ]
+        table = QTable({name: columns[name] for name in order})
+        table["energy"] = self.energy
+        table.meta = {"frame": self.frame, "status": self.status, **self.provenance}
+        if self.epoch is not None:
+            table.meta["epoch"] = f"{self.epoch.isot} TDB"
+        return table
+
+    def write(self, path: str | Path, *, force: bool = False) -> Path:
+        """Write the run to an HDF5 file, whole or not at all.
+
+        Parameters
+        ----------
+        path : path
+            The file; its folder must be there.
+        force : bool
+            Whether a file of that name may be replaced.
+
+        Returns
+        -------
+        Path
+            Where it is.
+
+        Raises
+        ------
+        StorageError
+            Where the file exists and ``force`` is not set, or it cannot be written.
+        """
+        datasets = {
+            "time": self.time,
+            "position": self.position,
+            "velocity": self.velocity,
+            "attitude": self.attitude,
+            "spin": self.spin,
+            "potential_energy": self.potential_energy,
+            "energy": self.energy,
+            "linear_momentum": self.linear_momentum,
+            "angular_momentum": self.angular_momentum,
+            "rotation_error": self.rotation_error,
+        }
+        attributes = {
+            "status": self.status,
+            "message": self.message,
+            "steps": self.steps,
+            "step": self.step.value,
+            "frame": self.frame,
+            "wall_time": self.wall_time.value,
+        }
+        for name in FIGURES:
+            attributes[name] = getattr(getattr(self, name), "value", getattr(self, name))
+        values = {"system": self.system, "integrator": self.integrator, "epoch": self.epoch}
+        return storage.write(Path(path), storage.Content(datasets, attributes, values, self.provenance), force=force)
+
+    @classmethod
+    def read(cls, path: str | Path) -> "Trajectory":
+        """Read a run from an HDF5 file.
+
+        Raises
+        ------
+        StorageError
+            Where the file is missing, broken, or not one of ours.
+        """
+        content = storage.read(Path(path))
+        attributes = content.attributes
+        try:
+            return cls(
+                system=content.values["system"],
+                integrator=content.values["integrator"],
+                si=TrajectoryFloats(*(np.asarray(content.datasets[name]) for name in TrajectoryFloats._fields)),
+                epoch=content.values.get("epoch"),
+                frame=str(attributes["frame"]),
+                status=str(attributes["status"]),
+                message=str(attributes["message"]),
+                steps=int(attributes["steps"]),
+                step=quantity(float(attributes["step"]), "s"),
+                wall_time=quantity(float(attributes["wall_time"]), "s"),
+                provenance=content.provenance,
+                **{
+                    name: quantity(attributes[name], unit) if unit else attributes[name]
+                    for name, unit in FIGURES.items()
+                },
+            )
+        except KeyError as error:
+            raise storage.broken(Path(path), f"{error.args[0]} is missing") from None
+
+
+def _span(seconds: float) -> str:
+    """Return a time in the unit that reads best."""
+    for unit, size in (("d", 86400.0), ("h", 3600.0)):
+        if abs(seconds) >= 2 * size:
+            return f"{seconds / size:.6g} {unit}"
+    return f"{seconds:.6g} s"

@@ -1,0 +1,104 @@
+"""A pair as the production steps see it: the working state, the constants and surfaces beside it, and back.
+
+The layout is that of ``kernels/layout.py``. The barycentre moves uniformly, so it is no part of the working state.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from binaryast.kernels import layout
+from binaryast.kernels.contact import HEADER
+from binaryast.kernels.lgvi import prepare
+from binaryast.state import State
+from binaryast.system import System
+from binaryast.units import Floats
+
+
+class Barycentre(NamedTuple):
+    """Where the barycentre is at the start, and how fast it moves (3,), (3,)."""
+
+    position: Floats
+    velocity: Floats
+
+
+class Motion(NamedTuple):
+    """The motion of a pair, time first and primary first: (N, 2, 3), (N, 2, 3), (N, 2, 3, 3), (N, 2, 3), and U (N,)."""
+
+    position: Floats
+    velocity: Floats
+    attitude: Floats
+    spin: Floats
+    potential_energy: Floats
+
+
+def constants(system: System) -> Floats:
+    """Return the constants of a pair."""
+    result = np.empty(layout.CONSTANTS_SIZE)
+    result[layout.REDUCED_MASS] = system.reduced_mass
+    for body, inverse, ratios in (
+        (system.primary, layout.INVERSE_2, layout.RATIOS_2),
+        (system.secondary, layout.INVERSE_1, layout.RATIOS_1),
+    ):
+        a, b, c = body.si.moments
+        result[inverse : inverse + 3] = 1 / a, 1 / b, 1 / c
+        result[ratios : ratios + 3] = (b - c) / a, (c - a) / b, (a - b) / c
+    return result
+
+
+def surfaces(system: System) -> Floats:
+    """Return the surfaces of a pair for the contact kernel; a distance of zero where one of them has none."""
+    two, one = system.primary.surface, system.secondary.surface
+    reach = system.primary.bounding_radius + system.secondary.bounding_radius if one and two else 0.0
+    pieces = [np.concatenate([centre, matrix[np.triu_indices(3)]]) for centre, matrix in two + one]
+    header = np.array([reach, len(two), len(one)])
+    if len(header) != HEADER:
+        raise AssertionError("the contact kernel expects another header")
+    return np.concatenate([header, *pieces])
+
+
+def barycentre(system: System, state: State) -> Barycentre:
+    """Return the barycentre of a state."""
+    shares = _shares(system)
+    return Barycentre(shares @ state.si.position, shares @ state.si.velocity)
+
+
+def to_working(system: System, state: State) -> Floats:
+    """Return the working state, complete with what its configuration exerts."""
+    working = np.zeros(layout.STATE_SIZE)
+    position, velocity, attitude, spin = state.si
+    working[layout.POSITION : layout.POSITION + 3] = position[1] - position[0]
+    working[layout.VELOCITY : layout.VELOCITY + 3] = velocity[1] - velocity[0]
+    quaternions = Rotation.from_matrix(attitude).as_quat()
+    for i, at_attitude, at_momentum in (
+        (0, layout.ATTITUDE_2, layout.MOMENTUM_2),
+        (1, layout.ATTITUDE_1, layout.MOMENTUM_1),
+    ):
+        working[at_attitude : at_attitude + 4] = quaternions[i]
+        working[at_momentum : at_momentum + 3] = system.bodies[i].si.moments * spin[i]
+    prepare(working, system.gravity.potential, system.parameters)
+    return working
+
+
+def from_rows(system: System, rows: Floats, time: Floats, origin: Barycentre) -> Motion:
+    """Return the inertial motion of both bodies from saved starts of working states at times since the start."""
+    two, one = _shares(system)
+    moving = origin.position + time[:, None] * origin.velocity
+    x = rows[:, layout.POSITION : layout.POSITION + 3]
+    v = rows[:, layout.VELOCITY : layout.VELOCITY + 3]
+    quaternions = np.stack([rows[:, at : at + 4] for at in (layout.ATTITUDE_2, layout.ATTITUDE_1)], axis=1)
+    momenta = np.stack([rows[:, at : at + 3] for at in (layout.MOMENTUM_2, layout.MOMENTUM_1)], axis=1)
+    return Motion(
+        position=np.stack([moving - one * x, moving + two * x], axis=1),
+        velocity=np.stack([origin.velocity - one * v, origin.velocity + two * v], axis=1),
+        attitude=Rotation.from_quat(quaternions.reshape(-1, 4)).as_matrix().reshape(-1, 2, 3, 3),
+        spin=momenta / np.array([body.si.moments for body in system.bodies]),
+        potential_energy=rows[:, layout.POTENTIAL].copy(),
+    )
+
+
+def _shares(system: System) -> Floats:
+    """Return each body's share of the mass, primary first."""
+    masses = np.array([body.si.mass for body in system.bodies])
+    return np.asarray(masses / masses.sum())
