@@ -70,7 +70,7 @@ def _complain(text: str, kind: str, arguments: Sequence[str], status: int) -> in
     return status
 
 
-def _show_warning(message: Any, category: type[Warning], *_: Any, **__: Any) -> None:
+def _show_warning(message: Any, *_: Any, **__: Any) -> None:
     print(f"binaryast: warning: {message}", file=sys.stderr)
 
 
@@ -148,7 +148,7 @@ def _scenario(system: str) -> "Scenario":
     return scenario.load(system) if _is_file(system) else catalogue.scenario(system)
 
 
-def _list(options: argparse.Namespace) -> int:
+def _list(_: argparse.Namespace) -> int:
     from binaryast import catalogue
 
     for name in catalogue.names():
@@ -311,5 +311,5 @@ def _completion(options: argparse.Namespace) -> int:
         "bash": f'_binaryast_systems() {{ compgen -W "{names}" -- "$1"; compgen -f -- "$1"; }}',
         "zsh": f"_binaryast_systems() {{ compadd {names}; _files }}",
     }
-    print(shtab.complete(parser(), options.shell, preamble=preamble))
+    print(shtab.complete(parser(), options.shell, preamble=preamble[options.shell]))
     return 0

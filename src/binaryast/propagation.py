@@ -26,7 +26,7 @@ from binaryast.kernels.measure import pair_measure
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.trajectory import Trajectory, TrajectoryFloats
-from binaryast.units import quantity, to_si
+from binaryast.units import Floats, quantity, to_si
 
 MOST_ROWS_BY_DEFAULT = 2000
 MOST_ROWS = 10_000_000
@@ -39,7 +39,7 @@ class Segment(NamedTuple):
     """Equal steps: their size [s], how many, and after how many a row is saved."""
 
     step: float
-    count: int
+    steps: int
     stride: int
 
 
@@ -137,7 +137,7 @@ def schedule(end: float, step: float, interval: float | None) -> list[Segment]:
             Segment(interval / stride, whole * stride, stride),
             Segment(remaining / max(rest, 1), rest, max(rest, 1)),
         ]
-    return [segment for segment in segments if segment.count]
+    return [segment for segment in segments if segment.steps]
 
 
 def _stride(count: int) -> int:
@@ -178,8 +178,8 @@ def _turn_error(name: str, spin: float, integrator: Integrator) -> StepError:
     """Return the error of a step that turns a body too far."""
     largest = integrator.largest_turn / spin
     return StepError(
-        f"step: {name} spins at {spin:.6g} rad/s (once in {2 * pi / spin / 3600:.4g} h); the implicit equation (128) has "
-        f"a solution only for h Omega < {integrator.largest_turn:g}, so the step must be below {largest:.6g} s, "
+        f"step: {name} spins at {spin:.6g} rad/s (once in {2 * pi / spin / 3600:.4g} h); the implicit equation (128) "
+        f"has a solution only for h Omega < {integrator.largest_turn:g}, so the step must be below {largest:.6g} s, "
         f"got {integrator.step.value:g} s"
     )
 
@@ -190,14 +190,14 @@ class _Run:
     def __init__(self, system: System, state: State, integrator: Integrator, segments: list[Segment]) -> None:
         self.system, self.integrator, self.segments = system, integrator, segments
         self.start = state
-        self.end = sum(segment.count * segment.step for segment in segments)
+        self.end = sum(segment.steps * segment.step for segment in segments)
         self.origin = working.barycentre(system, state)
         self.constants = working.constants(system)
         self.surfaces = working.surfaces(system)
         self.state = working.to_working(system, state)
         self.watch = np.zeros(loop.WATCH_SIZE)
-        self.rows = [self.state[None, : layout.ROW_SIZE].copy()]
-        self.times = [np.zeros(1)]
+        self.rows: list[Floats] = [self.state[None, : layout.ROW_SIZE].copy()]
+        self.times: list[Floats] = [np.zeros(1)]
         self.code = status.COMPLETED
         self.pressed: list[int] = []
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
@@ -232,12 +232,12 @@ class _Run:
 
     def _take(self, segment: Segment, show: Any) -> None:
         """Take one segment, in chunks short enough for the keyboard and the progress bar."""
-        rows = np.empty((segment.count // segment.stride, layout.ROW_SIZE))
+        rows = np.empty((segment.steps // segment.stride, layout.ROW_SIZE))
         self.rows.append(rows)
         self.watch[loop.STEPS] = 0
         chunk = 1000
         while (
-            (left := segment.count - int(self.watch[loop.STEPS])) and self.code == status.COMPLETED and not self.pressed
+            (left := segment.steps - int(self.watch[loop.STEPS])) and self.code == status.COMPLETED and not self.pressed
         ):
             began = time.perf_counter()
             count = min(chunk, left)
@@ -357,7 +357,7 @@ def _keyboard() -> Iterator[list[int]]:
     if not ours or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
         yield pressed
         return
-    signal.signal(signal.SIGINT, lambda number, frame: pressed.append(number))
+    signal.signal(signal.SIGINT, lambda number, _: pressed.append(number))
     try:
         yield pressed
     finally:
@@ -368,7 +368,7 @@ def _keyboard() -> Iterator[list[int]]:
 def _bar(end: float, progress: bool) -> Iterator[Any]:
     """Give a function that shows how far the run is; it appears only for runs of more than a second."""
     if not progress:
-        yield lambda elapsed: None
+        yield lambda _: None
         return
     from tqdm import tqdm
 
@@ -384,10 +384,8 @@ def _bar(end: float, progress: bool) -> Iterator[Any]:
 
 def provenance() -> dict[str, str]:
     """Return what is needed to repeat a run: versions, sources, machine, date, and G."""
-    from binaryast import __version__
-
     return {
-        "binaryast": __version__,
+        "binaryast": version("binaryast"),
         "kernels": source_hash(),
         "python": platform.python_version(),
         **{name: version(name) for name in ("numpy", "scipy", "numba", "astropy", "h5py")},

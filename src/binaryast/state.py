@@ -114,8 +114,8 @@ class State(Value):
         pole : array-like or Quantity, optional
             Of the orbit: three numbers, or right ascension and declination (two angles); the inertial z by default.
         spins : sequence
-            For each body, primary first: a period (time) or a rate (angle over time) about its z axis, a vector of three
-            rates in the body's frame, or ``"synchronous"``.
+            For each body, primary first: a period (time) or a rate (angle over time) about its z axis, a vector of
+            three rates in the body's frame, or ``"synchronous"``.
         epoch : astropy.time.Time, optional
             Of the state.
         frame : str, optional

@@ -74,21 +74,22 @@ def replace_whole(path: Path, data: bytes, *, force: bool) -> Path:
         Where it cannot be written; what was there before is untouched.
     """
     refuse(path, force=force)
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.", suffix=".part")
+    temporary = Path(name)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(data)
             file.flush()
             os.fsync(file.fileno())
-        os.chmod(temporary, 0o666 & ~_umask())
-        os.replace(temporary, path)
+        temporary.chmod(0o666 & ~_umask())
+        temporary.replace(path)
     except OSError as error:
         raise StorageError(
             f"{path}: could not be written ({len(data) / 1e6:.3g} MB): {_reason(error)}; nothing was changed"
         ) from None
     finally:
         with contextlib.suppress(FileNotFoundError):
-            os.remove(temporary)
+            temporary.unlink()
     return path
 
 

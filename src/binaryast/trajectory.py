@@ -1,4 +1,4 @@
-"""The result of a propagation: arrays with time first, what should be conserved and how well it was, and how it ended."""
+"""The result of a propagation: arrays with time first, what should be conserved and how well, and how it ended."""
 
 import operator
 from dataclasses import dataclass, field, replace

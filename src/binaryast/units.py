@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from binaryast.errors import InputError, UnitError
 
-Floats: TypeAlias = NDArray[np.float64]
+Floats: TypeAlias = NDArray[np.floating[Any]]
 Sign = Literal["any", "positive", "non-negative"]
 
 KINDS = {  # what a unit is called in a message, and one that users write

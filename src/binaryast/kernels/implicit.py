@@ -44,7 +44,7 @@ def solve(inertia: Array, g: Array) -> tuple[Array, int]:
 
     Returns f and the number of iterations, -1 where there is no solution on the branch of small turns.
     """
-    f = np.linalg.solve(inertia, g)
+    f: Array = np.linalg.solve(inertia, g)
     sine = sqrt(f @ f)
     if sine == 0.0:
         return f, 0
@@ -52,7 +52,7 @@ def solve(inertia: Array, g: Array) -> tuple[Array, int]:
         f = f * (asin(sine) / sine)  # exact for a spin about a principal axis
     for iteration in range(1, MOST_ITERATIONS + 1):
         matrix = gradient(inertia, f)
-        correction = np.linalg.solve(matrix, g - residual_function(inertia, f))
+        correction: Array = np.linalg.solve(matrix, g - residual_function(inertia, f))
         f = f + correction  # (130)
         size = sqrt(correction @ correction)
         if not size < 10.0:  # divergence, or not a number

@@ -5,6 +5,7 @@ signature (``@jit(SIGNATURE)``), compiled once and kept on disk. numba's own cac
 *another* file changes; so the folder is named by a hash of all kernel sources, and an old number cannot come back.
 """
 
+import contextlib
 import hashlib
 import os
 import shutil
@@ -24,7 +25,7 @@ from numba import types
 from numpy.typing import NDArray
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-Array: TypeAlias = NDArray[np.float64]
+Array: TypeAlias = NDArray[np.floating[Any]]
 Vector: TypeAlias = tuple[float, float, float]
 Quaternion: TypeAlias = tuple[float, float, float, float]
 Matrix: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
@@ -58,10 +59,8 @@ def source_hash() -> str:
     for path in sorted(folder.rglob("*.py")):
         digest.update(path.relative_to(folder).as_posix().encode())
         digest.update(path.read_bytes())
-    try:
+    with contextlib.suppress(PackageNotFoundError):  # a bare source tree has no version
         digest.update(version("binaryast").encode())
-    except PackageNotFoundError:  # running from a bare source tree
-        pass
     digest.update(numba.__version__.encode())
     return digest.hexdigest()[:16]
 

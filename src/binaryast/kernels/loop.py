@@ -1,5 +1,6 @@
 """Many steps: watch each, save every k-th, stop on contact or trouble. Never prints, never allocates."""
 
+from collections.abc import Callable
 from math import sqrt
 
 from numba import types
@@ -37,9 +38,9 @@ _LOOP = types.int64(
 
 @jit(_LOOP)
 def advance(
-    step: object,
-    measure: object,
-    touch: object,
+    step: Callable[..., int],
+    measure: Callable[..., tuple[float, float, float, float, float, float]],
+    touch: Callable[..., bool],
     potential: PairPotential,
     parameters: Array,
     constants: Array,

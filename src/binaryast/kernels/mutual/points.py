@@ -1,6 +1,6 @@
 """Two rigid sets of point masses: every pair of points attracts (section 5.1 of the paper, any number of points).
 
-The sum is over d = X + R rho1 - rho2. Reassociating it lets the inner loop run in vector lanes; the change is round-off.
+The sum is over d = X + R rho1 - rho2. Reassociating it lets the inner loop run in vector lanes; it changes round-off.
 """
 
 from math import sqrt
@@ -14,8 +14,10 @@ def potential(
     p: Array, x: float, y: float, z: float,
     r11: float, r12: float, r13: float, r21: float, r22: float, r23: float, r31: float, r32: float, r33: float,
 ) -> PairGravity:  # fmt: skip
-    """Return U, dU/dX and M; p is n1, n2, then x, y, z and G m of the n1 points of the secondary, each contiguous,
-    then x, y, z and m of the n2 points of the primary.
+    """Return U, dU/dX and M.
+
+    p is n1, n2, then x, y, z and G m of the n1 points of the secondary, each contiguous, then x, y, z and m of the n2
+    points of the primary.
     """
     n1, n2 = int(p[0]), int(p[1])
     x1, y1, z1, gm1 = p[2 : 2 + n1], p[2 + n1 : 2 + 2 * n1], p[2 + 2 * n1 : 2 + 3 * n1], p[2 + 3 * n1 : 2 + 4 * n1]
