@@ -103,6 +103,7 @@ class RigidBody(Value):
         matrix = shape.specific_inertia * mass_si if inertia is None else self._given_inertia(inertia)
         moments, turn = principal_axes(matrix, f"RigidBody {name}: inertia")
         self._check_moments(moments)
+        moments.flags.writeable = False
         self._set(
             mass=quantity(mass_si, "kg"),
             gm=quantity(gm_si, "m3 / s2"),

@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 import astropy.units as u
 import numpy as np
 from astropy.units import Quantity
-from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 from binaryast.errors import InputError, UnitError
@@ -69,6 +68,8 @@ def _separation(system: System, rate: float, synchronous: Sequence[bool]) -> flo
     def difference(r: float) -> float:
         return _square_rate(system, r, synchronous) / rate**2 - 1
 
+    from scipy.optimize import brentq  # a third of a second, needed only here and for Kepler's equation
+
     try:
         return float(brentq(difference, 0.7 * kepler, 2 * kepler, xtol=1e-14 * kepler, rtol=1e-15))
     except ValueError:
@@ -110,6 +111,8 @@ def from_elements(
 
 def _true_anomaly(mean: float, e: float) -> float:
     """Return the true anomaly of a mean anomaly, by Kepler's equation."""
+    from scipy.optimize import brentq
+
     mean = mean % (2 * pi)
     eccentric = brentq(lambda angle: angle - e * sin(angle) - mean, mean - 1, mean + 1, xtol=1e-15, rtol=1e-15)
     return float(2 * np.arctan2(sqrt(1 + e) * sin(eccentric / 2), sqrt(1 - e) * cos(eccentric / 2)))

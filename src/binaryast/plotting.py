@@ -5,7 +5,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -36,7 +35,12 @@ def _length(largest: float) -> tuple[float, str]:
 
 
 def _axes(ax: Axes | None) -> Axes:
-    return plt.subplots(layout="constrained")[1] if ax is None else ax
+    """Return the Axes given, or one in a new figure of pyplot's, which ``plt.show()`` will show."""
+    if ax is not None:
+        return ax
+    import matplotlib.pyplot as plt  # half a second, not needed where a figure goes straight to a file
+
+    return plt.subplots(layout="constrained")[1]
 
 
 def _over_time(ax: Axes, run: Trajectory, label: str, title: str) -> Axes:
@@ -102,7 +106,7 @@ def orbit(run: Trajectory, ax: Axes | None = None, *, frame: str = "inertial") -
             ax.plot(*path[-1], "o", color=COLOURS[i])
     ax.set(xlabel=f"x [{unit}]  ({place})", ylabel=f"y [{unit}]", title=subject, aspect="equal")
     ax.grid(alpha=0.25)
-    ax.legend(loc="upper right", fontsize="small")
+    ax.legend(loc="upper right", fontsize="small", markerscale=4)
     return ax
 
 
@@ -190,8 +194,19 @@ KINDS: dict[str, Callable[..., Any]] = {
 }
 
 
-def overview(run: Trajectory) -> Figure:
+def overview(run: Trajectory, figure: Figure | None = None) -> Figure:
     """Draw all of it on one page.
+
+    Parameters
+    ----------
+    run : Trajectory
+        Of a pair.
+    figure : Figure, optional
+        An empty one to draw into; a new one of pyplot's by default.
+
+    Returns
+    -------
+    Figure
 
     Examples
     --------
@@ -201,7 +216,13 @@ def overview(run: Trajectory) -> Figure:
     >>> run = ba.propagate(system, state, duration=1 * u.day, integrator=ba.LGVI(step=40 * u.s))
     >>> figure = ba.plotting.overview(run)
     """
-    figure, axes = plt.subplots(2, 4, figsize=(18, 8.5), layout="constrained")
+    if figure is None:
+        import matplotlib.pyplot as plt
+
+        figure = plt.figure()
+    figure.set_size_inches(18, 8.5)
+    axes = figure.subplots(2, 4)
+    figure.subplots_adjust(left=0.045, right=0.985, bottom=0.07, top=0.9, wspace=0.36, hspace=0.3)
     figure.suptitle(f"{' and '.join(run.system.names)}: {_title(run)}")
     orbit(run, axes[0, 0])
     orbit(run, axes[1, 0], frame="primary")
@@ -266,13 +287,14 @@ def save(run: Trajectory, path: str | Path, *, kind: str | None = None, force: b
     refuse(path, force=force)
     if kind is not None and kind not in KINDS:
         raise InputError(f"{kind!r} is not a kind of picture: expected one of {', '.join(KINDS)}")
-    with plt.rc_context({"backend": "agg"}):
-        figure = overview(run) if kind is None else KINDS[kind](run).figure
-        memory = io.BytesIO()
-        try:
-            figure.savefig(memory, format=path.suffix.lstrip(".") or "png", dpi=110)
-        except ValueError as error:
-            raise InputError(f"{path}: {error}") from None
-        finally:
-            plt.close(figure)
+    memory = io.BytesIO()
+    try:
+        if kind is None:
+            figure = overview(run, Figure())
+        else:
+            figure = Figure(layout="constrained")
+            KINDS[kind](run, figure.subplots())
+        figure.savefig(memory, format=path.suffix.lstrip(".") or "png", dpi=110)
+    except ValueError as error:
+        raise InputError(f"{path}: {error}") from None
     return replace_whole(path, memory.getvalue(), force=force)

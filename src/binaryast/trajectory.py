@@ -4,10 +4,9 @@ import operator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from astropy.table import QTable
 from astropy.time import Time, TimeDelta
 from astropy.units import Quantity
 from scipy.spatial.transform import Rotation
@@ -19,6 +18,9 @@ from binaryast.state import RelativeState, State
 from binaryast.system import System
 from binaryast.units import Floats, quantity
 from binaryast.values import Value
+
+if TYPE_CHECKING:
+    from astropy.table import QTable
 
 
 class TrajectoryFloats(NamedTuple):
@@ -259,7 +261,7 @@ class Trajectory(Value):
         ]
         return "\n".join(lines)
 
-    def to_table(self) -> QTable:
+    def to_table(self) -> "QTable":
         """Return the run as an astropy table: one row a time, a column a number; attitudes as quaternions, scalar last.
 
         Examples
@@ -272,6 +274,8 @@ class Trajectory(Value):
         >>> len(table), table.colnames[:3]
         (7, ['time', 'Didymos_x', 'Didymos_y'])
         """
+        from astropy.table import QTable  # a quarter of a second, needed only here
+
         columns: dict[str, Any] = {"time": self.time}
         for i, name in enumerate(self.system.names):
             quaternion = Rotation.from_matrix(self.si.attitude[:, i]).as_quat()

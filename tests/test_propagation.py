@@ -1,0 +1,166 @@
+"""Runs: the times that are met, what ends a run, what is refused before it starts."""
+
+import astropy.units as u
+import numpy as np
+import pytest
+
+import binaryast as ba
+from binaryast.errors import ContactError, EndWarning, InputError, StepError, StepWarning
+from binaryast.propagation import schedule
+
+
+@pytest.mark.parametrize(
+    ("end", "step", "interval", "segments"),
+    [
+        (100.0, 10.0, None, [(10.0, 10, 1)]),
+        (100.0, 30.0, None, [(25.0, 4, 1)]),
+        (5184000.0, 40.0, None, [(40.0, 129600, 72)]),
+        (100.0, 7.0, 20.0, [(20 / 3, 15, 3)]),
+        (100.0, 7.0, 30.0, [(6.0, 15, 5), (5.0, 2, 2)]),
+        (0.3, 0.1, 0.1, [(0.1, 3, 1)]),
+        (100.0, 50.0, 20.0, [(20.0, 5, 1)]),
+    ],
+)
+def test_schedules(end: float, step: float, interval: float | None, segments: list) -> None:
+    found = schedule(end, step, interval)
+    for segment, expected in zip(found, segments, strict=True):
+        assert segment == pytest.approx(expected)
+    assert sum(segment.step * segment.steps for segment in found) == pytest.approx(end, rel=1e-14)
+
+
+def test_times_are_met_exactly(tumbling: tuple[ba.System, ba.State]) -> None:
+    run = ba.propagate(*tumbling, duration=1 * u.day, integrator=ba.LGVI(40 * u.s), save_every=35 * u.min)
+    np.testing.assert_allclose(run.si.time[:-1], np.arange(42) * 2100.0, rtol=1e-15)
+    assert run.si.time[-1] == pytest.approx(86400, rel=1e-15)
+    assert run.step.value == pytest.approx(2100 / 53)
+    assert run.status == "completed"
+
+
+def test_at_most_two_thousand_rows_by_default(tumbling: tuple[ba.System, ba.State]) -> None:
+    run = ba.propagate(*tumbling, duration=10 * u.day, integrator=ba.LGVI(17 * u.s))
+    assert 1000 <= len(run) <= 2002
+    assert run.si.time[-1] == pytest.approx(864000, rel=1e-14)
+
+
+def test_the_first_row_is_the_start(tumbling: tuple[ba.System, ba.State]) -> None:
+    system, state = tumbling
+    run = ba.propagate(system, state, duration=1 * u.h, integrator=ba.LGVI(20 * u.s))
+    np.testing.assert_allclose(run.position[0].value, state.position.value, atol=1e-12)
+    np.testing.assert_allclose(run.attitude[0], state.attitude, atol=1e-15)
+    np.testing.assert_allclose(run.spin[0].value, state.spin.value, rtol=1e-14)
+
+
+def test_a_barycentre_that_moves_goes_on(tumbling: tuple[ba.System, ba.State]) -> None:
+    system, state = tumbling
+    arguments = state.arguments()
+    arguments["position"] = state.position + [1, 2, 3] * u.km
+    arguments["velocity"] = state.velocity + [1, -1, 2] * u.m / u.s
+    still = ba.propagate(system, state, duration=5 * u.h, integrator=ba.LGVI(20 * u.s))
+    moved = ba.propagate(system, ba.State(**arguments), duration=5 * u.h, integrator=ba.LGVI(20 * u.s))
+    shift = (moved.position[-1] - still.position[-1]).to_value("m")
+    np.testing.assert_allclose(shift, [np.array([1e3, 2e3, 3e3]) + 18000 * np.array([1, -1, 2])] * 2, rtol=1e-9)
+    np.testing.assert_allclose(moved.energy.value, still.energy.value, rtol=1e-12)
+
+
+def falling() -> tuple[ba.System, ba.State]:
+    bodies = [ba.RigidBody(n, ba.Ellipsoid(120 * u.m, 100 * u.m, 80 * u.m), mass=1e10 * u.kg) for n in "AB"]
+    zero = np.zeros((2, 3))
+    state = ba.State([[-200, 0, 0], [200, 0, 0]] * u.m, zero * u.m / u.s, [np.eye(3)] * 2, zero * u.rad / u.s)
+    return ba.System(bodies), state
+
+
+def test_contact_ends_a_run() -> None:
+    with pytest.warns(EndWarning, match="B touched A"):
+        run = ba.propagate(*falling(), duration=10 * u.day, integrator=ba.LGVI(5 * u.s), save_every=1 * u.h)
+    assert run.status == "contact"
+    assert 236 < run.separation[-1].value <= 240  # the long axes point at each other
+    assert run.si.time[-1] < 86400
+    assert np.all(np.diff(run.si.time) > 0)
+    assert np.all(np.isfinite(run.si.position))
+
+
+def test_point_clouds_pass_through_each_other() -> None:
+    cloud = ba.PointCloud(np.vstack([np.eye(3), -np.eye(3)]) * 100 * u.m)
+    bodies = [ba.RigidBody(n, cloud, mass=1e10 * u.kg) for n in "AB"]
+    zero = np.zeros((2, 3))
+    state = ba.State([[-200, 35, 0], [200, 0, 30]] * u.m, zero * u.m / u.s, [np.eye(3)] * 2, zero * u.rad / u.s)
+    run = ba.propagate(ba.System(bodies, gravity=ba.PointPairs()), state, duration=6 * u.h, integrator=ba.LGVI(1 * u.s))
+    assert run.status == "completed"
+    assert run.closest_approach.value < 100
+
+
+def test_a_step_without_solution_in_the_middle_ends_the_run_and_keeps_what_there_was() -> None:
+    """The dumbbells' encounter spins one of them up beyond h Omega = 1 of this step."""
+    system, state = ba.catalogue.load("dumbbells")
+    with pytest.warns(EndWarning, match="the step must be below"), pytest.warns(StepWarning):
+        run = ba.propagate(system, state, duration=15 * u.s, integrator=ba.LGVI(0.105 * u.s))
+    assert run.status == "failed"
+    assert 0 < run.si.time[-1] < 15
+    assert len(run) > 10
+
+
+def test_a_doubtful_step_is_a_warning(didymos: ba.System) -> None:
+    state = ba.State.circular_orbit(didymos, separation=1.2 * u.km, spins=[2.26 * u.h, "synchronous"])
+    with pytest.warns(StepWarning, match="will lag"):
+        ba.propagate(didymos, state, duration=1 * u.h, integrator=ba.LGVI(10 * u.min))
+
+
+@pytest.mark.parametrize(
+    ("change", "error", "says"),
+    [
+        ({"integrator": ba.LGVI(1400 * u.s)}, StepError, "Didymos spins at .* below 1294.8"),
+        ({"integrator": ba.LGVI(2 * u.day)}, StepError, "longer than the run"),
+        ({"duration": 10}, InputError, "write duration=10 \\* u.s"),
+        ({"duration": -1 * u.s}, InputError, "positive"),
+        ({"duration": np.inf * u.s}, InputError, "finite"),
+        ({"duration": [1, 2] * u.s}, InputError, "single value"),
+        ({"save_every": 2 * u.day}, StepError, "save_every"),
+        ({"save_every": 1e-5 * u.s}, InputError, "save less often"),
+        ({"integrator": "LGVI"}, InputError, "expected a Integrator"),
+        ({"state": None}, InputError, "expected a State"),
+    ],
+)
+def test_what_is_refused(didymos: ba.System, change: dict, error: type, says: str) -> None:
+    state = ba.State.circular_orbit(didymos, separation=1.2 * u.km, spins=[2.26 * u.h, "synchronous"])
+    arguments = {"system": didymos, "state": state, "duration": 1 * u.day, "integrator": ba.LGVI(40 * u.s)} | change
+    with pytest.raises(error, match=says):
+        ba.propagate(**arguments)
+
+
+def test_bodies_that_overlap_at_the_start(didymos: ba.System) -> None:
+    state = ba.State.circular_orbit(didymos, separation=500 * u.m, spins=[2.26 * u.h, "synchronous"])
+    with pytest.raises(ContactError, match="overlap at the start"):
+        ba.propagate(didymos, state, duration=1 * u.day, integrator=ba.LGVI(40 * u.s))
+
+
+def test_touching_is_a_matter_of_shape_not_of_bounding_spheres() -> None:
+    bodies = [ba.RigidBody(n, ba.Ellipsoid(300 * u.m, 100 * u.m, 100 * u.m), mass=1e10 * u.kg) for n in "AB"]
+    zero = np.zeros((2, 3))
+    state = ba.State([[0, -110, 0], [0, 110, 0]] * u.m, zero * u.m / u.s, [np.eye(3)] * 2, zero * u.rad / u.s)
+    run = ba.propagate(ba.System(bodies), state, duration=10 * u.s, integrator=ba.LGVI(1 * u.s))
+    assert run.status == "completed"
+
+
+def test_gravity_that_is_not_a_number_does_not_leave(didymos: ba.System) -> None:
+    @ba.pair_potential
+    def broken(p, x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33):  # noqa: ANN001, ANN202
+        value = -p[0] / x if x < 1150.0 else np.nan
+        return value, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+
+    system = ba.System(didymos.bodies, gravity=ba.PairPotential(broken, [1e10]))
+    start = ba.State.circular_orbit(didymos, separation=1.2 * u.km, spins=[2.26 * u.h, "synchronous"])
+    with pytest.raises(InputError, match="not a number"):
+        ba.propagate(system, start, duration=1 * u.h, integrator=ba.LGVI(40 * u.s))
+
+
+def test_progress_is_shown_on_standard_error(
+    tumbling: tuple[ba.System, ba.State], capfd: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    import tqdm
+
+    plain = tqdm.tqdm
+    monkeypatch.setattr(tqdm, "tqdm", lambda **options: plain(**(options | {"delay": 0, "leave": True})))
+    ba.propagate(*tumbling, duration=10 * u.day, integrator=ba.LGVI(20 * u.s), progress=True)
+    captured = capfd.readouterr()
+    assert captured.out == ""
+    assert "10/10 d simulated" in captured.err

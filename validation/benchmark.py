@@ -1,0 +1,100 @@
+"""What one step costs: ``python -m validation.benchmark``.
+
+One core, warm, interleaved, the median of several rounds. Absolute times depend on the machine and its neighbours; the
+ratio to a plain vectorised sum over 256 point pairs, taken in the same rounds, hardly does.
+"""
+
+import statistics
+import time
+from collections.abc import Callable
+
+import numba
+import numpy as np
+
+import binaryast as ba
+from binaryast import working
+from binaryast.kernels import layout, lgvi, loop
+from binaryast.kernels.contact import pair_touches
+from binaryast.kernels.measure import pair_measure
+
+ROUNDS = 15
+
+
+@numba.njit(fastmath=True, error_model="numpy")
+def plain_sum(a: np.ndarray, b: np.ndarray, repeats: int) -> float:
+    """Evaluate the potential and attraction of 16 x 16 point pairs, with nothing around it; (4, 16) arrays x, y, z, m."""
+    result = 0.0
+    for k in range(repeats):
+        u = fx = fy = fz = 0.0
+        for i in range(a.shape[1]):
+            x, y, z = a[0, i] + 1e-9 * k, a[1, i], a[2, i]
+            for j in range(b.shape[1]):
+                dx, dy, dz = x - b[0, j], y - b[1, j], z - b[2, j]
+                square = dx * dx + dy * dy + dz * dz
+                w = a[3, i] * b[3, j] / np.sqrt(square)
+                u += w
+                w /= square
+                fx += w * dx
+                fy += w * dy
+                fz += w * dz
+        result += u + fx + fy + fz
+    return result
+
+
+def stepper(name: str, h: float, *, save: bool = False) -> Callable[[int], None]:
+    """Return a function that takes so many steps of a catalogue entry, watched and, on request, with every 10th saved."""
+    system, state = ba.catalogue.load(name)
+    array, constants, surfaces = working.to_working(system, state), working.constants(system), working.surfaces(system)
+    rows = np.empty((200_000, layout.ROW_SIZE))
+
+    def take(count: int) -> None:
+        current = array.copy()
+        watch = np.zeros(loop.WATCH_SIZE)
+        watch[: loop.ENERGY_ERROR] = pair_measure(current, constants)[: loop.ENERGY_ERROR]
+        watch[loop.CLOSEST] = np.inf
+        loop.advance(
+            lgvi.pair_step,
+            pair_measure,
+            pair_touches,
+            system.gravity.potential,
+            system.parameters,
+            constants,
+            surfaces,
+            current,
+            watch,
+            h,
+            count,
+            10 if save else count,
+            rows,
+        )
+
+    return take
+
+
+def main() -> None:
+    """Measure and print."""
+    random = np.random.default_rng(0)
+    clouds = [np.vstack([random.normal(size=(3, 16)) + [[offset], [0], [0]], np.ones(16)]) for offset in (0.0, 10.0)]
+    jobs: dict[str, tuple[Callable[[int], object], int]] = {
+        "plain vectorised sum over 256 point pairs": (lambda n: plain_sum(*clouds, n), 40_000),
+        "LGVI step, second degree (didymos)": (stepper("didymos", 40.0), 60_000),
+        "the same, every 10th step saved": (stepper("didymos", 40.0, save=True), 60_000),
+        "LGVI step, 2 x 2 point pairs (dumbbells)": (stepper("dumbbells", 1e-4), 60_000),
+    }
+    times: dict[str, list[float]] = {name: [] for name in jobs}
+    for job, _ in jobs.values():
+        job(10)
+    for _ in range(ROUNDS):
+        for name, (job, count) in jobs.items():
+            began = time.perf_counter()
+            job(count)
+            times[name].append((time.perf_counter() - began) / count * 1e6)
+    reference = times["plain vectorised sum over 256 point pairs"]
+    print(f"{'':44} {'us, median':>12} {'us, best':>10} {'ratio':>8}")
+    for name, values in times.items():
+        ratio = statistics.median(value / other for value, other in zip(values, reference, strict=True))
+        print(f"{name:44} {statistics.median(values):12.3f} {min(values):10.3f} {ratio:8.2f}")
+
+
+if __name__ == "__main__":
+    main()
