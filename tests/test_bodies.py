@@ -29,7 +29,11 @@ def test_axes_are_not_sorted() -> None:
 def test_mass_density_and_gm_say_the_same() -> None:
     shape = ba.Sphere(100 * u.m)
     volume = 4 / 3 * np.pi * 1e6
-    for given_as in ({"mass": 2e9 * u.kg}, {"density": 2e9 / volume * u.kg / u.m**3}, {"gm": 2e9 * G * u.m**3 / u.s**2}):
+    for given_as in (
+        {"mass": 2e9 * u.kg},
+        {"density": 2e9 / volume * u.kg / u.m**3},
+        {"gm": 2e9 * G * u.m**3 / u.s**2},
+    ):
         body = ba.RigidBody("S", shape, **given_as)
         assert body.mass.to_value("kg") == pytest.approx(2e9, rel=1e-15)
         assert body.gm.to_value("m3 / s2") == pytest.approx(2e9 * G, rel=1e-15)
@@ -61,7 +65,9 @@ def test_a_cloud_is_brought_to_its_principal_axes() -> None:
     np.testing.assert_allclose(original, points @ turn.T + shift, atol=1e-13)
 
 
-@given(st.tuples(*[st.floats(-0.7, 0.7)] * 3), st.sampled_from([(1, 2, 2.5), (2, 2, 3), (3, 2, 2), (2, 2, 2), (1, 1.5, 1)]))
+@given(
+    st.tuples(*[st.floats(-0.7, 0.7)] * 3), st.sampled_from([(1, 2, 2.5), (2, 2, 3), (3, 2, 2), (2, 2, 2), (1, 1.5, 1)])
+)
 def test_principal_axes_are_the_nearest(angles: tuple, moments: tuple) -> None:
     r = Rotation.from_rotvec(angles).as_matrix()
     found, turn = principal_axes(r @ np.diag(moments) @ r.T, "inertia")
@@ -77,7 +83,7 @@ def test_inertia_as_a_matrix_turns_points_and_surface() -> None:
     body = ba.RigidBody("E", ba.Ellipsoid(2 * u.m, 1 * u.m, 1 * u.m), mass=5 * u.kg, inertia=inertia)
     np.testing.assert_allclose(body.si.moments, [3, 5, 6])
     np.testing.assert_allclose(body.turn, r, atol=1e-14)
-    (_, matrix), = body.surface
+    ((_, matrix),) = body.surface
     np.testing.assert_allclose(body.turn @ matrix @ body.turn.T, np.diag([4, 1, 1]), atol=1e-13)
 
 
@@ -97,12 +103,15 @@ def test_inertia_as_a_matrix_turns_points_and_surface() -> None:
         (lambda: ba.RigidBody("x", "sphere", mass=1 * u.kg), "expected a shape"),
         (lambda: ba.RigidBody("", ba.Sphere(1 * u.m), mass=1 * u.kg), "name"),
         (lambda: ba.RigidBody("x", ba.Sphere(1 * u.m), mass=1 * u.kg, inertia=[1, 1, 3] * u.kg * u.m**2), "triangle"),
-        (lambda: ba.RigidBody("x", ba.Sphere(1 * u.m), mass=1 * u.kg, inertia=np.ones((3, 3)) * u.kg * u.m**2), "positive"),
+        (
+            lambda: ba.RigidBody("x", ba.Sphere(1 * u.m), mass=1 * u.kg, inertia=np.ones((3, 3)) * u.kg * u.m**2),
+            "positive",
+        ),
         (lambda: ba.RigidBody("x", ba.PointCloud([[1, 0, 0], [2, 0, 0]] * u.m), mass=1 * u.kg), "give inertia="),
         (lambda: ba.RigidBody("x", ba.PointCloud([[1, 0, 0]] * u.m), density=1 * u.kg / u.m**3), "no volume"),
     ],
 )
-def test_what_cannot_be(build, says: str) -> None:  # noqa: ANN001
+def test_what_cannot_be(build, says: str) -> None:
     with pytest.raises(InputError, match=says.replace("(", r"\(").replace("*", r"\*")) as caught:
         build()
     assert "\n" not in str(caught.value)

@@ -143,7 +143,7 @@ def test_touching_is_a_matter_of_shape_not_of_bounding_spheres() -> None:
 
 def test_gravity_that_is_not_a_number_does_not_leave(didymos: ba.System) -> None:
     @ba.pair_potential
-    def broken(p, x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33):  # noqa: ANN001, ANN202
+    def broken(p, x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33):
         value = -p[0] / x if x < 1150.0 else np.nan
         return value, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
 

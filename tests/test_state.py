@@ -107,7 +107,7 @@ def test_mean_anomaly_obeys_kepler(didymos: ba.System) -> None:
 
 
 def test_spins_in_every_way(didymos: ba.System) -> None:
-    def spin(value) -> np.ndarray:  # noqa: ANN001
+    def spin(value) -> np.ndarray:
         return ba.State.circular_orbit(didymos, separation=1.2 * u.km, spins=[value, "synchronous"]).si.spin[0]
 
     np.testing.assert_allclose(spin(2 * u.h), [0, 0, 2 * np.pi / 7200])

@@ -22,7 +22,7 @@ ROUNDS = 15
 
 @numba.njit(fastmath=True, error_model="numpy")
 def plain_sum(a: np.ndarray, b: np.ndarray, repeats: int) -> float:
-    """Evaluate the potential and attraction of 16 x 16 point pairs, with nothing around it; (4, 16) arrays x, y, z, m."""
+    """Evaluate potential and attraction of 16 x 16 point pairs, nothing around it; (4, 16) arrays x, y, z, m."""
     result = 0.0
     for k in range(repeats):
         u = fx = fy = fz = 0.0
@@ -42,9 +42,10 @@ def plain_sum(a: np.ndarray, b: np.ndarray, repeats: int) -> float:
 
 
 def stepper(name: str, h: float, *, save: bool = False) -> Callable[[int], None]:
-    """Return a function that takes so many steps of a catalogue entry, watched and, on request, with every 10th saved."""
+    """Return a function that takes steps of a catalogue entry, watched and, on request, with every 10th saved."""
     system, state = ba.catalogue.load(name)
-    array, constants, surfaces = working.to_working(system, state), working.constants(system), working.surfaces(system)
+    array = working.to_working(system, state)
+    constants, surfaces = working.constants(system), working.surfaces(system)
     rows = np.empty((200_000, layout.ROW_SIZE))
 
     def take(count: int) -> None:
@@ -74,7 +75,9 @@ def stepper(name: str, h: float, *, save: bool = False) -> Callable[[int], None]
 def main() -> None:
     """Measure and print."""
     random = np.random.default_rng(0)
-    clouds = [np.vstack([random.normal(size=(3, 16)) + [[offset], [0], [0]], np.ones(16)]) for offset in (0.0, 10.0)]
+    clouds = [
+        np.vstack([random.normal(size=(3, 16)) + np.array([[offset], [0], [0]]), np.ones(16)]) for offset in (0.0, 10.0)
+    ]
     jobs: dict[str, tuple[Callable[[int], object], int]] = {
         "plain vectorised sum over 256 point pairs": (lambda n: plain_sum(*clouds, n), 40_000),
         "LGVI step, second degree (didymos)": (stepper("didymos", 40.0), 60_000),

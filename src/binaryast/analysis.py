@@ -31,7 +31,7 @@ def orbit_angle(run: Trajectory) -> Quantity:
     >>> import astropy.units as u
     >>> import binaryast as ba
     >>> system, state = ba.catalogue.load("patroclus")
-    >>> run = ba.propagate(system, state, duration=4.283 * u.day, integrator=ba.LGVI(20 * u.min))
+    >>> run = ba.propagate(system, state, duration=4.283 * u.day, integrator=ba.LGVI(1 * u.min))
     >>> print(ba.analysis.orbit_angle(run)[-1].to("deg").round(2))
     360.0 deg
     """

@@ -7,6 +7,7 @@ Results go to standard output, everything else to standard error; an error is on
 import argparse
 import json
 import os
+import re
 import sys
 import warnings
 from collections.abc import Sequence
@@ -47,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = sys.argv[1:] if arguments is None else list(arguments)
     warnings.showwarning = _show_warning
     try:
-        options = parser().parse_args(arguments)
+        options = parser().parse_args(_joined(arguments))
         status: int = options.command(options)
         sys.stdout.flush()
         return status
@@ -60,6 +61,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _complain(str(error), type(error).__name__, arguments, WRONG_INPUT)
     except MemoryError:
         return _complain("not enough memory: save less often, with --save-every", "MemoryError", arguments, FAILED)
+
+
+def _joined(arguments: Sequence[str]) -> list[str]:
+    """Join ``--duration -5d`` to ``--duration=-5d``: a wrong value, not an unknown option."""
+    result: list[str] = []
+    for argument in arguments:
+        if result and result[-1].startswith("--") and "=" not in result[-1] and re.match(r"-\.?\d", argument):
+            result[-1] += f"={argument}"
+        else:
+            result.append(argument)
+    return result
 
 
 def _complain(text: str, kind: str, arguments: Sequence[str], status: int) -> int:
@@ -182,14 +194,16 @@ def _run(options: argparse.Namespace) -> int:
     stem = Path(options.system).stem if _is_file(options.system) else options.system
     continued = Path(options.system).suffix == ".h5"
     output = Path(options.output or (f"{stem}-continued.h5" if continued else f"{stem}.h5"))
-    picture = None if options.no_picture else output.with_suffix(".png")
+    picture = None if options.no_picture else Path(output.parent, f"{output.stem}.png")
+    storage.refuse(output, force=options.force)
+    if output.suffix not in (".h5", ".hdf5"):
+        raise InputError(f"--output: {output}: the file of a run is HDF5: give a name that ends in .h5")
     duration, step, save_every = (
         _time(getattr(options, name), f"--{name.replace('_', '-')}") for name in ("duration", "step", "save_every")
     )
     system, state, integrator, duration, save_every = _start(options.system, duration, step, save_every, options.degree)
-    for path in (output, picture):
-        if path is not None:
-            storage.refuse(path, force=options.force)
+    if picture is not None:
+        storage.refuse(picture, force=options.force)
     run = _propagate(system, state, integrator, duration, save_every, progress=not options.json)
     run.write(output, force=options.force)
     if picture is not None:

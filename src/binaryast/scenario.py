@@ -213,8 +213,8 @@ def _epoch(value: Any) -> Time:
     scale = words.pop().lower() if len(words) > 1 and words[-1].isalpha() else "tdb"
     try:
         return Time("T".join(words), scale=scale)
-    except ValueError as error:
-        raise InputError(f'state.epoch: {value!r}: expected such as "2022-09-26T23:14:24 UTC" ({error})') from None
+    except ValueError:
+        raise InputError(f'state.epoch: {value!r} is no date: expected such as "2022-09-26T23:14:24 UTC"') from None
 
 
 def _table(tables: dict[str, Any], key: str, where: str = "") -> dict[str, Any]:

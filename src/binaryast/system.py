@@ -63,8 +63,8 @@ class System(Value):
     >>> one, two = (ba.RigidBody(n, ba.Sphere(1 * u.km), mass=1e12 * u.kg) for n in ("one", "two"))
     >>> system = ba.System([one, two])
     >>> attraction = system.mutual_gravity(position=[10, 0, 0] * u.km)
-    >>> print(attraction.force_on_secondary)
-    [-667430.0       0.0       0.0] N
+    >>> print(attraction.gradient)
+    [667430.      0.      0.] N
     """
 
     bodies: Sequence[RigidBody]

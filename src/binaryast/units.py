@@ -68,6 +68,8 @@ def to_si(value: Any, unit: str, name: str, shape: tuple[int, ...] = (), sign: S
         value = parse(value, unit, name)
     if not isinstance(value, Quantity):
         value = _from_list(value, name, kind, example)
+    if np.iscomplexobj(value.value):
+        raise InputError(f"{name}: expected a real value, got {value}")
     try:
         floats = np.array(value.to_value(u.Unit(unit)), dtype=np.float64)
     except u.UnitConversionError:

@@ -9,7 +9,7 @@ import binaryast as ba
 
 
 @ba.pair_potential
-def repelled(p, x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33):  # noqa: ANN001, ANN201
+def repelled(p, x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33):
     """A user's own: a monopole with an inverse cube besides."""
     r = (x * x + y * y + z * z) ** 0.5
     w = p[0] / r**3 + 3 * p[1] / r**5
@@ -65,11 +65,14 @@ def energy(system: ba.System, x: np.ndarray, r: np.ndarray) -> float:
     return system.mutual_gravity(x * u.m, r).energy.value
 
 
-def derivative(function, step: float) -> float:  # noqa: ANN001
+def derivative(function, step: float) -> float:
     """Central difference of order six."""
     h = step
     return (
-        45 * (function(h) - function(-h)) - 9 * (function(2 * h) - function(-2 * h)) + function(3 * h) - function(-3 * h)
+        45 * (function(h) - function(-h))
+        - 9 * (function(2 * h) - function(-2 * h))
+        + function(3 * h)
+        - function(-3 * h)
     ) / (60 * h)
 
 
@@ -78,10 +81,12 @@ def test_gradient_and_moment_are_derivatives_of_the_energy(system: ba.System) ->
         gravity = system.mutual_gravity(x * u.m, r)
         force = np.linalg.norm(gravity.gradient.value)
         for i, e in enumerate(np.eye(3)):
-            slope = derivative(lambda s, e=e: energy(system, x + s * e, r), 8.0)
+            slope = derivative(lambda s, x=x, r=r, e=e: energy(system, x + s * e, r), 8.0)
             assert slope == pytest.approx(gravity.gradient.value[i], abs=1e-10 * force)
             # dU for R -> exp(s S(e)) R is M.e, for the torque on the secondary is -M
-            turn = derivative(lambda s, e=e: energy(system, x, Rotation.from_rotvec(s * e).as_matrix() @ r), 0.02)
+            turn = derivative(
+                lambda s, x=x, r=r, e=e: energy(system, x, Rotation.from_rotvec(s * e).as_matrix() @ r), 0.02
+            )
             assert turn == pytest.approx(gravity.moment.value[i], abs=1e-10 * force * 1500)
 
 
@@ -104,7 +109,9 @@ def test_swapping_the_bodies(name: str) -> None:
         assert two.energy.value == pytest.approx(one.energy.value, rel=1e-14)
         scale = np.linalg.norm(one.gradient.value)
         np.testing.assert_allclose(r @ two.gradient.value, -one.gradient.value, atol=1e-13 * scale)
-        np.testing.assert_allclose(r @ two.torque_on_primary.value, one.torque_on_secondary.value, atol=1e-13 * scale * 1500)
+        np.testing.assert_allclose(
+            r @ two.torque_on_primary.value, one.torque_on_secondary.value, atol=1e-13 * scale * 1500
+        )
 
 
 @pytest.mark.parametrize("name", SWAPPABLE)
@@ -112,9 +119,7 @@ def test_far_away_it_is_a_point_mass(name: str) -> None:
     system = MODELS[name]()
     point = ba.System(system.bodies, gravity=ba.PointMass())
     x, r = configurations(1)[0]
-    errors = [
-        energy(system, x * far, r) / energy(point, x * far, r) - 1 for far in (10.0, 100.0)
-    ]
+    errors = [energy(system, x * far, r) / energy(point, x * far, r) - 1 for far in (10.0, 100.0)]
     assert abs(errors[0]) < 1e-2
     assert errors[1] == pytest.approx(errors[0] / 100, rel=0.1, abs=1e-14)
 

@@ -50,7 +50,9 @@ def test_two_or_three_iterations_in_normal_use() -> None:
     most = {"printed": 0, "production": 0}
     for moments, n in zip(bodies(3000, 3), directions(3000, 4), strict=True):
         g = moments * n * 0.2
-        most["production"] = max(most["production"], implicit.solve_cayley(tuple(1 / moments), ratios(moments), tuple(g))[1])
+        most["production"] = max(
+            most["production"], implicit.solve_cayley(tuple(1 / moments), ratios(moments), tuple(g))[1]
+        )
         most["printed"] = max(most["printed"], implicit.solve(np.diag(moments), g)[1])
     assert most["production"] <= 2
     assert most["printed"] <= 4

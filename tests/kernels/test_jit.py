@@ -26,15 +26,17 @@ def test_the_folder_is_named_by_the_sources(tmp_path: Path) -> None:
 
 def test_a_second_process_compiles_nothing(tmp_path: Path) -> None:
     code = (
-        "from binaryast.kernels.mutual import point_mass;"
-        "print(sum(point_mass.potential.stats.cache_misses.values()))"
+        "from binaryast.kernels.mutual import point_mass;print(sum(point_mass.potential.stats.cache_misses.values()))"
     )
     assert python(code, BINARYAST_CACHE_DIR=str(tmp_path)).stdout.split() == ["1"]
     assert python(code, BINARYAST_CACHE_DIR=str(tmp_path)).stdout.split() == ["0"]
 
 
 def test_the_users_own_numba_cache_is_left_alone() -> None:
-    code = "import numba; before = numba.config.CACHE_DIR; import binaryast.kernels.lgvi; print(numba.config.CACHE_DIR == before)"
+    code = (
+        "import numba; before = numba.config.CACHE_DIR; import binaryast.kernels.lgvi;"
+        "print(numba.config.CACHE_DIR == before)"
+    )
     assert python(code).stdout.strip() == "True"
 
 

@@ -88,7 +88,9 @@ def test_it_is_the_printed_map(name: str, h: float, count: int, bound: float) ->
     velocity = motion.attitude[0, 0].T @ (motion.velocity[0, 1] - motion.velocity[0, 0])
     gamma = system.reduced_mass * velocity
     assert np.linalg.norm(gamma - v["Gamma"]) < bound * np.linalg.norm(v["Gamma"])
-    assert np.linalg.norm(motion.velocity[0, 0] * system.primary.si.mass - v["gamma2"]) < bound * np.linalg.norm(v["gamma2"])
+    assert np.linalg.norm(motion.velocity[0, 0] * system.primary.si.mass - v["gamma2"]) < bound * np.linalg.norm(
+        v["gamma2"]
+    )
     pi2 = system.primary.si.moments * motion.spin[0, 0]
     assert np.linalg.norm(pi2 - v["Pi2"]) < bound * np.linalg.norm(v["Pi2"])
     pi = v["R"] @ (system.secondary.si.moments * motion.spin[0, 1])
@@ -100,7 +102,9 @@ def test_one_step_is_the_printed_one_to_the_last_digits() -> None:
     v = printed(system, state, 30.0, 1)
     array = working.to_working(system, state)
     steps(system, array, 30.0, 1)
-    motion = working.from_rows(system, array[None, : layout.ROW_SIZE], np.array([30.0]), working.barycentre(system, state))
+    motion = working.from_rows(
+        system, array[None, : layout.ROW_SIZE], np.array([30.0]), working.barycentre(system, state)
+    )
     assert np.linalg.norm(motion.position[0, 0] - v["x2"]) < 1e-15 * np.linalg.norm(v["X"])
     assert attitude_angle(motion.attitude[0, 1], v["R2"] @ v["R"]) < 1e-15
 
@@ -131,7 +135,9 @@ def test_it_is_symplectic() -> None:
 
     z = base[: layout.ATTITUDE_2].copy()
     scale = np.repeat([1e-2, 1e-6], 3)
-    jacobian = np.column_stack([(stepped(z + d) - stepped(z - d)) / (2 * s) for d, s in zip(np.diag(scale), scale, strict=True)])
+    jacobian = np.column_stack(
+        [(stepped(z + d) - stepped(z - d)) / (2 * s) for d, s in zip(np.diag(scale), scale, strict=True)]
+    )
     form = np.block([[np.zeros((3, 3)), mass * np.eye(3)], [-mass * np.eye(3), np.zeros((3, 3))]])
     np.testing.assert_allclose(jacobian.T @ form @ jacobian, form, atol=1e-6 * mass)
 

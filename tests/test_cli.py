@@ -1,0 +1,308 @@
+"""The command line as a user meets it: what it writes, what it refuses, Ctrl-C, completion."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import binaryast as ba
+from binaryast import cli
+
+
+def files(folder: Path) -> list[str]:
+    """Return the names of what is in a folder."""
+    return sorted(path.name for path in folder.iterdir())
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def command(*arguments: str, **options) -> subprocess.CompletedProcess:
+    """Run the command in a process of its own."""
+    return subprocess.run(
+        [sys.executable, "-m", "binaryast", *arguments],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+        **options,
+    )
+
+
+def test_the_main_job(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    assert cli.main(["run", "didymos", "--duration", "5d"]) == 0
+    out = capsys.readouterr().out
+    assert "Didymos and Dimorphos: completed" in out
+    assert "mutual period 11.92" in out
+    assert files(folder) == ["didymos.h5", "didymos.png"]
+    assert ba.Trajectory.read("didymos.h5").status == "completed"
+
+
+def test_json_is_one_object_and_nothing_else(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    assert cli.main(["run", "dumbbells", "--duration", "15s", "--step", "0.0002s", "--json", "--no-picture"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result["status"] == "completed"
+    assert result["steps"] == 75000
+    assert result["max_relative_energy_error"] == pytest.approx(6.1188e-7, rel=1e-4)
+    assert result["closest_approach"] == pytest.approx(0.3303, abs=1e-4)
+    assert result["file"] == "dumbbells.h5"
+    assert not (folder / "dumbbells.png").exists()
+
+
+def test_options_take_the_place_of_the_entry(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    arguments = [
+        "run",
+        "moshup",
+        "--duration",
+        "2 d",
+        "--step",
+        "50s",
+        "--save-every",
+        "10 min",
+        "--degree",
+        "0",
+        "-o",
+        "a.h5",
+    ]
+    assert cli.main([*arguments, "--no-picture"]) == 0
+    run = ba.Trajectory.read("a.h5")
+    assert run.si.time[1] == 600
+    assert isinstance(run.system.gravity, ba.PointMass)
+    assert run.step.value == 50
+
+
+def test_going_on_from_a_file(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    assert cli.main(["run", "didymos", "--duration", "1d", "--no-picture"]) == 0
+    assert cli.main(["run", "didymos.h5", "--duration", "1d", "--no-picture"]) == 0
+    first, second = ba.Trajectory.read("didymos.h5"), ba.Trajectory.read("didymos-continued.h5")
+    assert abs(second.position[0] - first.position[-1]).max().value < 1e-9
+    assert cli.main(["run", "didymos-continued.h5", "--no-picture"]) == 2
+    assert "--duration" in capsys.readouterr().err
+
+
+def test_a_scenario_from_the_catalogue(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    assert cli.main(["show", "didymos", "--toml"]) == 0
+    Path("mine.toml").write_text(capsys.readouterr().out)
+    assert cli.main(["run", "mine.toml", "--duration", "1d"]) == 0
+    assert Path("mine.h5").exists()
+    assert Path("mine.png").exists()
+    assert cli.main(["plot", "mine.h5", "--kind", "orbit", "-o", "orbit.svg"]) == 0
+    assert Path("orbit.svg").exists()
+
+
+def test_list_and_show(capsys: pytest.CaptureFixture) -> None:
+    assert cli.main(["list"]) == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == ba.catalogue.names()
+    assert cli.main(["show", "didymos"]) == 0
+    out = capsys.readouterr().out
+    assert "didymos_system_15.tpc" in out
+    assert "separation 1183.9" in out
+
+
+WRONG = {
+    "a bare number": (["--step", "40"], "'40' has no unit"),
+    "a wrong unit": (["--step", "40kg"], "is not a time"),
+    "nonsense": (["--step", "soon"], "is not a time"),
+    "a negative time": (["--duration", "-5d"], "positive"),
+    "not a number": (["--duration", "nan d"], "finite"),
+    "no solution": (["--step", "1500s"], "Didymos spins at 0.00077227 rad/s"),
+    "a step longer than the run": (["--step", "600s", "--duration", "300s"], "longer than the run"),
+    "an unknown option": (["--stp", "40s"], "unrecognized arguments"),
+    "an unknown integrator": (["--integrator", "RK4"], "invalid choice"),
+    "an order that is not there": (["--order", "3"], "invalid choice"),
+    "no folder": (["-o", "nowhere/run.h5"], "no folder"),
+    "a folder for a file": (["-o", "."], "is a folder"),
+}
+
+
+@pytest.mark.parametrize("case", WRONG)
+@pytest.mark.parametrize("as_json", [False, True])
+def test_wrong_options(folder: Path, capsys: pytest.CaptureFixture, case: str, *, as_json: bool) -> None:
+    options, says = WRONG[case]
+    assert cli.main(["run", "didymos", "--duration", "1d", *options, *(["--json"] if as_json else [])]) == 2
+    captured = capsys.readouterr()
+    assert says in captured.err
+    assert captured.err.count("\n") == 1
+    if as_json:
+        result = json.loads(captured.out)
+        assert result["status"] == "error"
+        assert says in result["message"]
+    else:
+        assert captured.out == ""
+    assert files(folder) == []
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["run", "didimos"], "did you mean 'didymos'"),
+        (["run", "none.toml"], "no such file"),
+        (["run", "none.h5", "--duration", "1d"], "no such file"),
+        (["plot", "none.h5"], "no such file"),
+        (["show", "none"], "not in the catalogue"),
+        ([], "required: COMMAND"),
+        (["fly"], "invalid choice"),
+        (["completion", "fish"], "invalid choice"),
+    ],
+)
+def test_wrong_names(folder: Path, capsys: pytest.CaptureFixture, arguments: list[str], says: str) -> None:
+    assert cli.main(arguments) == 2
+    captured = capsys.readouterr()
+    assert says in captured.err
+    assert captured.err.count("\n") == 1
+    assert captured.out == ""
+
+
+SCENARIOS = {
+    "negative mass": ('gm = "34.5980739686124 m3 / s2"', 'mass = "-5e11 kg"', "positive"),
+    "negative axis": ('a = "425.5 m"', 'a = "-425.5 m"', "positive"),
+    "a bare length": ('a = "425.5 m"', "a = 425.5", "has no unit"),
+    "an inertia that no mass has": (
+        'gm = "34.5980739686124 m3 / s2"',
+        'gm = "34 m3 / s2"\ninertia = "[1e16, 1e16, 3e16] kg m2"',
+        "triangle",
+    ),
+    "overlap": ('period = "11.921473 h"', 'separation = "500 m"', "overlap at the start"),
+    "an unknown key": ('period = "11.921473 h"', 'perid = "11.921473 h"', "did you mean 'period'"),
+}
+
+
+@pytest.mark.parametrize("case", SCENARIOS)
+def test_wrong_scenarios(folder: Path, capsys: pytest.CaptureFixture, case: str) -> None:
+    old, new, says = SCENARIOS[case]
+    Path("mine.toml").write_text(ba.catalogue.text("didymos").replace(old, new, 1))
+    assert cli.main(["run", "mine.toml", "--duration", "1d"]) == 2
+    captured = capsys.readouterr()
+    assert says in captured.err
+    assert captured.err.count("\n") == 1
+    assert files(folder) == ["mine.toml"]
+
+
+def test_an_attitude_that_is_not_a_rotation(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    text = ba.catalogue.text("dumbbells").replace("R = [[1, 0, 0]", "R = [[2, 0, 0]")
+    Path("mine.toml").write_text(text)
+    assert cli.main(["run", "mine.toml"]) == 2
+    assert "not a rotation" in capsys.readouterr().err
+
+
+def test_a_file_that_exists_is_refused_before_the_run(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    for name in ("didymos.h5", "didymos.png"):
+        Path(name).write_text("precious")
+        assert cli.main(["run", "didymos"]) == 2
+        assert f"{name} exists already" in capsys.readouterr().err
+        assert Path(name).read_text() == "precious"
+        Path(name).unlink()
+    Path("didymos.h5").write_text("old")
+    assert cli.main(["run", "didymos", "--duration", "1d", "--force"]) == 0
+
+
+def test_a_broken_file(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    Path("broken.h5").write_bytes(b"\x89HDF\r\n\x1a\n" + b"\0" * 100)
+    assert cli.main(["plot", "broken.h5"]) == 2
+    captured = capsys.readouterr()
+    assert "not a readable HDF5 file" in captured.err
+    assert captured.err.count("\n") == 1
+    assert files(folder) == ["broken.h5"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="the system has no limit on the size of files")
+def test_no_room(folder: Path) -> None:
+    shell = f"ulimit -f 20; exec {sys.executable} -m binaryast run didymos --duration 20d --no-picture"
+    result = subprocess.run(["bash", "-c", shell], capture_output=True, text=True, check=False, cwd=folder)
+    assert result.returncode == 2
+    assert "could not be written" in result.stderr
+    assert result.stderr.strip().count("\n") == 0
+    assert files(folder) == []
+
+
+@pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="the administrator may write everywhere")
+def test_a_folder_that_cannot_be_written(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    locked = folder / "locked"
+    locked.mkdir(mode=0o500)
+    assert cli.main(["run", "didymos", "--duration", "1d", "-o", "locked/run.h5"]) == 2
+    assert "nothing can be written" in capsys.readouterr().err
+
+
+def test_a_folder_that_refuses_to_be_written(
+    folder: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same, for whoever may write everywhere: the system call is made to fail."""
+
+    def refuse(**_) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    monkeypatch.setattr("binaryast.storage.tempfile.TemporaryFile", refuse)
+    assert cli.main(["run", "didymos", "--duration", "1d"]) == 2
+    captured = capsys.readouterr()
+    assert "nothing can be written in" in captured.err
+    assert captured.err.count("\n") == 1
+    assert files(folder) == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are sent in another way")
+def test_ctrl_c_keeps_what_was_computed(folder: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "binaryast", "run", "didymos", "--duration", "2000000d", "--no-picture"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        cwd=folder,
+    )
+    assert process.stderr is not None
+    while "simulated" not in process.stderr.read(20):  # the bar appears after a second of running
+        pass
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == cli.INTERRUPTED
+    assert "interrupted" in out
+    assert "Go on with: binaryast run didymos.h5 --duration" in err
+    assert "Traceback" not in err
+    run = ba.Trajectory.read(folder / "didymos.h5")
+    assert run.status == "interrupted"
+    assert 0 < run.time[-1].to_value("d") < 2e6
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are sent in another way")
+def test_ctrl_c_before_there_is_anything(folder: Path) -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-m", "binaryast", "run", "didymos"], stderr=subprocess.PIPE, text=True, cwd=folder
+    )
+    time.sleep(0.7)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=60)
+    assert process.returncode != 0
+    assert files(folder) == []
+    assert len(err.splitlines()) <= 1 or "import" in err  # Python itself may still be starting
+
+
+def test_a_reader_who_has_seen_enough(folder: Path) -> None:
+    shell = f"set -o pipefail; {sys.executable} -m binaryast show didymos --toml | head -1"
+    result = subprocess.run(["bash", "-c", shell], capture_output=True, text=True, check=False)
+    assert "Traceback" not in result.stderr
+    assert result.stdout.startswith("title")
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh"])
+def test_completion(capsys: pytest.CaptureFixture, shell: str) -> None:
+    assert cli.main(["completion", shell]) == 0
+    script = capsys.readouterr().out
+    assert "didymos" in script
+    assert "--save-every" in script
+    if shell == "bash":
+        completing = script + '\nCOMP_WORDS=(binaryast run did); COMP_CWORD=2; _shtab_binaryast; echo "${COMPREPLY[@]}"'
+        result = subprocess.run(["bash", "-c", completing], capture_output=True, text=True, check=False)
+        assert "didymos" in result.stdout.split()
+
+
+def test_python_m_binaryast() -> None:
+    result = command("--version")
+    assert result.returncode == 0
+    assert result.stdout.startswith("binaryast ")

@@ -1,0 +1,51 @@
+"""The README's promises: its Python runs, its commands are the ones that CI runs, its bounds are the ones tried."""
+
+import os
+import re
+import tomllib
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pytest
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"```(\w+)\n(.*?)```", README, flags=re.DOTALL)
+
+
+def test_its_python_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (code,) = [text for language, text in BLOCKS if language == "python"]
+    assert len([line for line in code.splitlines() if line.strip()]) <= 13
+    names: dict = {}
+    exec(code, names)
+    assert names["again"].status == "completed"
+    plt.close("all")
+
+
+def test_ci_runs_its_test_command_and_nothing_else() -> None:
+    command = next(text.strip() for language, text in BLOCKS if language == "sh" and "pytest" in text)
+    lines = (ROOT / ".ci" / "run").read_text().splitlines()
+    assert lines[-1] == command
+    assert all(line.startswith(("#!", "set ", "cd ")) for line in lines[:-1])
+    assert os.access(ROOT / ".ci" / "run", os.X_OK)
+
+
+def test_its_commands_are_one_line_each() -> None:
+    first, second = [text.strip() for language, text in BLOCKS if language == "sh"][:2]
+    assert "\n" not in first + second
+    assert "binaryast run didymos" in first
+
+
+def test_what_it_shows_is_there() -> None:
+    for path in re.findall(r"\]\(([^)#]+)\)", README):
+        assert (ROOT / path).exists(), path
+
+
+def test_every_dependency_has_a_lower_bound_that_is_tried() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    wanted = project["dependencies"] + project["optional-dependencies"]["dev"]
+    bounds = dict(re.fullmatch(r"([\w-]+)>=([\d.]+)", item).groups() for item in wanted)  # type: ignore[union-attr]
+    lines = (ROOT / "tests" / "lowest.txt").read_text().splitlines()
+    tried = dict(re.fullmatch(r"([\w-]+)==([\d.]+)\.\*", line).groups() for line in lines if not line.startswith("#"))  # type: ignore[union-attr]
+    assert tried == bounds

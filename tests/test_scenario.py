@@ -1,0 +1,127 @@
+"""Scenario files and the catalogue: what they hold, and one line for each mistake."""
+
+from pathlib import Path
+
+import astropy.units as u
+import numpy as np
+import pytest
+
+import binaryast as ba
+from binaryast.errors import InputError, ScenarioError, StorageError
+from binaryast.scenario import load, loads
+
+PLAIN = ba.catalogue.text("didymos")
+
+
+@pytest.mark.parametrize("name", ba.catalogue.names())
+def test_every_entry_runs_and_has_sources(name: str) -> None:
+    entry = ba.catalogue.scenario(name)
+    assert entry.title
+    assert entry.sources
+    assert ba.catalogue.title(name) == entry.title
+    step = entry.integrator.step
+    run = ba.propagate(entry.system, entry.state, duration=20 * step, integrator=entry.integrator)
+    assert run.status == "completed"
+    assert entry.duration > 100 * step
+
+
+def test_the_entries_hold_the_published_numbers() -> None:
+    didymos, state = ba.catalogue.load("didymos")
+    assert sum(body.si.gm for body in didymos.bodies) == pytest.approx(34.8961209875640, rel=1e-13)
+    assert state.separation.value == pytest.approx(1183.9, abs=0.1)
+    assert state.frame == "ICRF"
+    patroclus, state = ba.catalogue.load("patroclus")
+    assert sum(body.si.gm for body in patroclus.bodies) == pytest.approx(
+        (0.0740606361329036 + 0.020917) * 1e9, rel=1e-12
+    )
+    assert patroclus.primary.density.value == pytest.approx(patroclus.secondary.density.value, rel=1e-9)
+    assert state.separation.to_value("km") == pytest.approx(692.5, abs=2)
+    moshup, state = ba.catalogue.load("moshup")
+    assert moshup.primary.si.mass == 2.353e12
+    assert state.separation.to_value("km") == pytest.approx(2.55, abs=0.02)
+
+
+def test_a_printed_entry_is_a_scenario(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(PLAIN, encoding="utf-8")
+    scenario = load(path)
+    assert scenario.name == "mine"
+    assert scenario.duration == 60 * u.day
+    assert scenario.integrator.step == 40 * u.s
+
+
+def test_the_other_ways_to_start() -> None:
+    def start(state: str) -> ba.State:
+        return loads(
+            PLAIN[: PLAIN.index("[state]")] + state + '[run]\nduration = "1 d"\nstep = "40 s"\n', name="x", where="x"
+        ).state
+
+    elements = start(
+        '[state]\ntype = "from_elements"\nsemi_major_axis = "1.2 km"\neccentricity = 0.1\nmean_anomaly = "10 deg"\n'
+        'spins = ["[0, 1e-5, 7e-4] rad / s", "1e-4 rad / s"]\nepoch = "2022-09-26T23:14:24.184 UTC"\n'
+    )
+    np.testing.assert_allclose(elements.si.spin, [[0, 1e-5, 7e-4], [0, 0, 1e-4]])
+    assert elements.epoch.utc.isot == "2022-09-26T23:14:24.184"
+    inertial = start(
+        '[state]\ntype = "inertial"\nposition = "[[0, 0, 0], [1.2, 0, 0]] km"\n'
+        'velocity = "[[0, 0, 0], [0, 17, 0]] cm / s"\n'
+        "attitude = [[[1, 0, 0], [0, 1, 0], [0, 0, 1]], [[1, 0, 0], [0, 1, 0], [0, 0, 1]]]\n"
+        'spin = "[[0, 0, 1], [0, 0, 2]] deg / min"\n'
+    )
+    assert inertial.separation == 1200 * u.m
+
+
+def changed(old: str, new: str) -> str:
+    assert old in PLAIN
+    return PLAIN.replace(old, new, 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        (changed('gm = "34', 'gn = "34'), r"bodies\[0\]\.gn: unknown key: did you mean 'gm'"),
+        (changed("[state]", "[sate]"), "sate: unknown key: did you mean 'state'"),
+        (changed('period = "', 'perod = "'), "state.perod: unknown key: did you mean 'period'"),
+        (changed('step = "', 'stp = "'), "run.stp: unknown key: did you mean 'step'"),
+        (changed('step = "40 s"', ""), "run.step is missing"),
+        (changed('step = "40 s"', "step = 40"), 'run.step: expected a text with a unit such as "40 s"'),
+        (changed('step = "40 s"', 'step = "40"'), "'40' has no unit"),
+        (changed('step = "40 s"', 'step = "40 kg"'), "is not a time"),
+        (changed('step = "40 s"', 'step = "-40 s"'), "positive"),
+        (changed('step = "40 s"', 'step = "nan s"'), "finite"),
+        (changed('"Ellipsoid"', '"Elipsoid"'), "did you mean 'Ellipsoid'"),
+        (changed('a = "425.5 m", ', ""), r"bodies\[0\]\.shape\.a is missing"),
+        (changed('a = "425.5 m"', "a = 425.5"), "a=425.5 has no unit"),
+        (changed('a = "425.5 m"', 'a = "425.5 kg"'), "is not a length"),
+        (changed('a = "425.5 m"', 'a = "425.5 parsecs and more"'), "is not a length"),
+        (changed('"SecondDegree"', '"PointPairs"'), "not a set of points"),
+        (changed('"circular_orbit"', '"circular"'), "did you mean 'circular_orbit'"),
+        (changed('["2.26 h", "synchronous"]', '["2.26 h", "sync"]'), "is not understood"),
+        (changed('["2.26 h", "synchronous"]', '"2.26 h"'), "expected a list"),
+        (changed('name = "Dimorphos"', 'name = "Didymos"'), "two bodies are called"),
+        (changed("[state]", '[state]\nepoch = "yesterday"'), "state.epoch"),
+        ("bodies = 1\nstate = 2\nrun = 3", "bodies: expected two tables"),
+        ("", "bodies is missing"),
+        ("[[bodies]\n", "not TOML"),
+    ],
+)
+def test_one_line_for_each_mistake(text: str, says: str) -> None:
+    with pytest.raises(ScenarioError, match=says) as caught:
+        loads(text, name="mine", where="mine.toml")
+    assert str(caught.value).startswith("mine.toml: ")
+    assert "\n" not in str(caught.value)
+
+
+def test_files_that_are_not_there_or_not_text(tmp_path: Path) -> None:
+    with pytest.raises(StorageError, match="no such file"):
+        load(tmp_path / "none.toml")
+    (tmp_path / "binary.toml").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(StorageError, match="as text"):
+        load(tmp_path / "binary.toml")
+    with pytest.raises(StorageError, match="as text"):
+        load(tmp_path)
+
+
+def test_unknown_names_get_the_nearest() -> None:
+    with pytest.raises(InputError, match="did you mean 'didymos'"):
+        ba.catalogue.load("didimos")
