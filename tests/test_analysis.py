@@ -106,3 +106,22 @@ def test_point_clouds_are_drawn_too(tmp_path: Path) -> None:
     state = ba.State.circular_orbit(system, separation=1 * u.km, spins=["synchronous", "synchronous"])
     run = ba.propagate(system, state, duration=1 * u.day, integrator=ba.LGVI(60 * u.s))
     assert ba.plotting.save(run, tmp_path / "cloud.png").exists()
+
+
+def test_a_fall_on_a_line_can_be_drawn(tmp_path: Path) -> None:
+    bodies = [ba.RigidBody(n, ba.Sphere(100 * u.m), mass=1e10 * u.kg) for n in ("$A$", "B_$")]
+    zero = np.zeros((2, 3))
+    state = ba.State([[-200, 0, 0], [200, 0, 0]] * u.m, zero * u.m / u.s, [np.eye(3)] * 2, zero * u.rad / u.s)
+    run = ba.propagate(ba.System(bodies), state, duration=1 * u.h, integrator=ba.LGVI(5 * u.s))
+    assert ba.plotting.save(run, tmp_path / "fall.png").exists()
+
+
+@pytest.mark.parametrize("rows", [slice(0, 1), slice(0, 2)])
+def test_short_runs_can_be_drawn(run: ba.Trajectory, tmp_path: Path, rows: slice) -> None:
+    assert ba.plotting.save(run[rows], tmp_path / "short.png").exists()
+    assert run[rows].summary()
+
+
+def test_something_else_than_a_run() -> None:
+    with pytest.raises(InputError, match=r"expected a ba\.Trajectory"):
+        ba.analysis.orbit_angle("run")

@@ -101,6 +101,21 @@ def test_inertia_as_a_matrix_turns_points_and_surface() -> None:
         (lambda: ba.RigidBody("x", ba.Sphere(1 * u.m), mass=1 * u.kg, gm=1 * u.m**3 / u.s**2), "mass and gm"),
         (lambda: ba.RigidBody("x", ba.Sphere(1 * u.m), mass=-1 * u.kg), "positive"),
         (lambda: ba.RigidBody("x", "sphere", mass=1 * u.kg), "expected a shape"),
+        (lambda: ba.Sphere(1e200 * u.m), "beyond what can be computed"),
+        (lambda: ba.Sphere((1 + 1j) * u.m), "real"),
+        (lambda: ba.Sphere("1 m"), "expected a length such as 1 * u.m, got 1 m"),
+        (lambda: ba.Sphere(None), "expected a length such as 1 * u.m, got None"),
+        (lambda: ba.PointCloud([[1, 2, 3]] * u.m, [1] * u.kg), "without a unit"),
+        (lambda: ba.PointCloud([[1, 2, 3]] * u.m, ["1"]), "numbers"),
+        (lambda: ba.PointCloud([[1 * u.m], [1 * u.m, 2 * u.m]]), "different shapes"),
+        (lambda: ba.RigidBody("a\nb", ba.Sphere(1 * u.m), mass=1 * u.kg), "printable"),
+        (lambda: ba.RigidBody("x" * 65, ba.Sphere(1 * u.m), mass=1 * u.kg), "64 characters"),
+        (lambda: ba.RigidBody("x", ba.Sphere(1e80 * u.m), density=1e80 * u.kg / u.m**3), "beyond what can be computed"),
+        (lambda: ba.System(None), "expected a list of ba.RigidBody"),
+        (lambda: ba.System([1, 2]), "expected ba.RigidBody"),
+        (lambda: ba.LGVI(1 * u.s, order=[2, 2]), "order"),
+        (lambda: ba.PairPotential(lambda: 0), "decorate it"),
+        (lambda: ba.pair_potential(lambda p: 0.0), "13 arguments"),
         (lambda: ba.RigidBody("", ba.Sphere(1 * u.m), mass=1 * u.kg), "name"),
         (lambda: ba.RigidBody("x", ba.Sphere(1 * u.m), mass=1 * u.kg, inertia=[1, 1, 3] * u.kg * u.m**2), "triangle"),
         (
@@ -115,6 +130,22 @@ def test_what_cannot_be(build, says: str) -> None:
     with pytest.raises(InputError, match=says.replace("(", r"\(").replace("*", r"\*")) as caught:
         build()
     assert "\n" not in str(caught.value)
+
+
+def test_lists_of_quantities_are_joined() -> None:
+    inertia = [5 * u.kg * u.m**2, 6 * u.kg * u.m**2, 70000 * u.kg * u.cm**2]
+    body = ba.RigidBody("x", ba.Sphere(1 * u.m), mass=1 * u.kg, inertia=inertia)
+    np.testing.assert_allclose(body.si.moments, [5, 6, 7])
+
+
+def test_gravity_that_is_not_a_number_does_not_leave() -> None:
+    system = ba.System([ba.RigidBody(n, ba.Sphere(1 * u.m), mass=1 * u.kg) for n in "AB"])
+    for x in (1e-150, 1e89):
+        if x < 1:
+            with pytest.raises(InputError, match="not a number"):
+                system.mutual_gravity([x, 0, 0] * u.m)
+        else:
+            assert np.isfinite(system.mutual_gravity([x, 0, 0] * u.m).energy)
 
 
 def test_bodies_are_frozen_and_pickle() -> None:

@@ -110,7 +110,7 @@ def test_list_and_show(capsys: pytest.CaptureFixture) -> None:
 WRONG = {
     "a bare number": (["--step", "40"], "'40' has no unit"),
     "a wrong unit": (["--step", "40kg"], "is not a time"),
-    "nonsense": (["--step", "soon"], "is not a time"),
+    "nonsense": (["--step", "soon"], "is not understood"),
     "a negative time": (["--duration", "-5d"], "positive"),
     "not a number": (["--duration", "nan d"], "finite"),
     "no solution": (["--step", "1500s"], "Didymos spins at 0.00077227 rad/s"),
@@ -119,6 +119,7 @@ WRONG = {
     "an unknown integrator": (["--integrator", "RK4"], "invalid choice"),
     "an order that is not there": (["--order", "3"], "invalid choice"),
     "no folder": (["-o", "nowhere/run.h5"], "no folder"),
+    "another kind of file": (["-o", "run.png"], "ends in .h5"),
     "a folder for a file": (["-o", "."], "is a folder"),
 }
 
@@ -164,7 +165,7 @@ def test_wrong_names(folder: Path, capsys: pytest.CaptureFixture, arguments: lis
 SCENARIOS = {
     "negative mass": ('gm = "34.5980739686124 m3 / s2"', 'mass = "-5e11 kg"', "positive"),
     "negative axis": ('a = "425.5 m"', 'a = "-425.5 m"', "positive"),
-    "a bare length": ('a = "425.5 m"', "a = 425.5", "has no unit"),
+    "a bare length": ('a = "425.5 m"', "a = 425.5", 'with a unit such as "425.5 m"'),
     "an inertia that no mass has": (
         'gm = "34.5980739686124 m3 / s2"',
         'gm = "34 m3 / s2"\ninertia = "[1e16, 1e16, 3e16] kg m2"',
@@ -288,6 +289,14 @@ def test_a_reader_who_has_seen_enough(folder: Path) -> None:
     result = subprocess.run(["bash", "-c", shell], capture_output=True, text=True, check=False)
     assert "Traceback" not in result.stderr
     assert result.stdout.startswith("title")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
+def test_output_that_takes_no_more(folder: Path) -> None:
+    shell = f"{sys.executable} -m binaryast list > /dev/full"
+    result = subprocess.run(["bash", "-c", shell], capture_output=True, text=True, check=False)
+    assert result.returncode == cli.FAILED
+    assert result.stderr == "binaryast: error: standard output: No space left on device\n"
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh"])

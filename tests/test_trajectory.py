@@ -36,6 +36,10 @@ def test_rows_and_slices(run: ba.Trajectory) -> None:
         run[49]
     with pytest.raises(InputError, match="slice"):
         run["time"]
+    with pytest.raises(InputError, match="slice"):
+        run[::0]
+    with pytest.raises(IndexError, match="no rows"):
+        run[5:5]
 
 
 def test_conserved_quantities_are_those_of_the_paper(run: ba.Trajectory) -> None:
@@ -92,6 +96,17 @@ def test_file_and_back(run: ba.Trajectory, tmp_path: Path) -> None:
         assert {"energy", "angular_momentum", "attitude", "spin", "rotation_error"} <= set(file)
 
 
+@pytest.mark.parametrize("name", ["run.h5", "Ä ö ß.h5", "with space.hdf5"])
+def test_names_of_files(run: ba.Trajectory, tmp_path: Path, name: str) -> None:
+    assert len(ba.Trajectory.read(run.write(tmp_path / name))) == len(run)
+
+
+@pytest.mark.parametrize("name", [None, 3, "a\0b", "x" * 400])
+def test_names_that_no_file_has(run: ba.Trajectory, name: object) -> None:
+    with pytest.raises(StorageError):
+        run.write(name)
+
+
 def test_a_run_goes_on_from_a_file(run: ba.Trajectory, tmp_path: Path) -> None:
     again = ba.Trajectory.read(run.write(tmp_path / "run.h5"))
     more = ba.propagate(again.system, again[-1], duration=1 * u.h, integrator=again.integrator)
@@ -133,8 +148,8 @@ def test_a_users_potential_that_cannot_be_imported_leaves_the_data_readable(tmp_
 def test_table(run: ba.Trajectory, tmp_path: Path) -> None:
     run.to_table().write(tmp_path / "run.ecsv")
     table = QTable.read(tmp_path / "run.ecsv")
-    np.testing.assert_array_equal(table["B_x"], run.position[:, 1, 0])
-    assert table["A_spin_z"].unit == u.rad / u.s
+    np.testing.assert_array_equal(table["B.x"], run.position[:, 1, 0])
+    assert table["A.spin_z"].unit == u.rad / u.s
     assert table.meta["epoch"].endswith("TDB")
 
 
@@ -155,7 +170,9 @@ def test_folders_that_are_not_there(run: ba.Trajectory, tmp_path: Path) -> None:
         run.write(tmp_path)
 
 
-@pytest.mark.parametrize("damage", ["missing", "empty", "text", "truncated", "foreign", "newer", "hollow", "garbled"])
+@pytest.mark.parametrize(
+    "damage", ["missing", "empty", "text", "truncated", "foreign", "newer", "hollow", "garbled", "kilometres"]
+)
 def test_broken_files(run: ba.Trajectory, tmp_path: Path, damage: str) -> None:
     path = tmp_path / "run.h5"
     if damage != "missing":
@@ -179,9 +196,33 @@ def test_broken_files(run: ba.Trajectory, tmp_path: Path, damage: str) -> None:
     if damage == "garbled":
         with h5py.File(path, "r+") as file:
             file["system"].attrs["class"] = "Sistem"
+    if damage == "kilometres":
+        with h5py.File(path, "r+") as file:
+            file["position"].attrs["unit"] = "km"
     with pytest.raises(StorageError, match=r"run\.h5") as caught:
         ba.Trajectory.read(path)
     assert "\n" not in str(caught.value)
+    if damage == "kilometres":  # a change that makes sense is read on request, units and all
+        assert ba.Trajectory.read(path, verify=False).position[0, 1, 0] == 1000 * run.position[0, 1, 0]
+    else:
+        with pytest.raises(StorageError, match=r"run\.h5"):
+            ba.Trajectory.read(path, verify=False)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_flipped_bits_are_seen(run: ba.Trajectory, tmp_path: Path, seed: int) -> None:
+    path = run.write(tmp_path / "run.h5")
+    data = bytearray(path.read_bytes())
+    data[np.random.default_rng(seed).integers(len(data))] ^= 0x10
+    path.write_bytes(data)
+    with pytest.raises(StorageError, match=r"run\.h5"):
+        ba.Trajectory.read(path)
+
+
+def test_a_file_is_plain_hdf5(run: ba.Trajectory, tmp_path: Path) -> None:
+    with h5py.File(run.write(tmp_path / "run.h5")) as file:
+        np.testing.assert_array_equal(file["spin"], run.si.spin)
+        assert file.attrs["status"] == "completed"
 
 
 WRITE_WITHOUT_ROOM = """

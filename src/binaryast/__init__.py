@@ -4,26 +4,23 @@ Everything public is here; what needs compiled code, plots or files is imported 
 """
 
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
+
+from binaryast import constants as _constants
 
 if TYPE_CHECKING:
     from binaryast import analysis, catalogue, constants, errors, plotting, scenario
     from binaryast.bodies import RigidBody
     from binaryast.errors import BinaryastError
-    from binaryast.gravity import PairPotential, PointMass, PointPairs, SecondDegree
+    from binaryast.gravity import PairPotential, PointMass, PointPairs, SecondDegree, pair_potential
     from binaryast.integrators import LGVI
-    from binaryast.kernels.jit import pair_potential
     from binaryast.propagation import propagate
     from binaryast.shapes import Dumbbell, Ellipsoid, PointCloud, Shape, Sphere
     from binaryast.state import RelativeState, State
     from binaryast.system import MutualGravity, System
     from binaryast.trajectory import Trajectory
 
-try:
-    __version__ = version("binaryast")
-except PackageNotFoundError:  # running from a bare source tree
-    __version__ = "0+unknown"
+__version__ = _constants.VERSION
 
 _HOMES = {
     "BinaryastError": "errors",
@@ -43,7 +40,7 @@ _HOMES = {
     "State": "state",
     "System": "system",
     "Trajectory": "trajectory",
-    "pair_potential": "kernels.jit",
+    "pair_potential": "gravity",
     "propagate": "propagation",
 }
 _MODULES = ("analysis", "catalogue", "constants", "errors", "plotting", "scenario")

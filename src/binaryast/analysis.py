@@ -5,7 +5,7 @@ from astropy.units import Quantity
 
 from binaryast.errors import InputError
 from binaryast.trajectory import Trajectory
-from binaryast.units import Floats, quantity
+from binaryast.units import Floats, brief, quantity
 
 
 def orbit_angle(run: Trajectory) -> Quantity:
@@ -24,7 +24,7 @@ def orbit_angle(run: Trajectory) -> Quantity:
     Raises
     ------
     InputError
-        For a run of fewer than two rows, or without a turn about any axis.
+        For a run of fewer than two rows.
 
     Examples
     --------
@@ -42,15 +42,17 @@ def orbit_angle(run: Trajectory) -> Quantity:
 
 
 def mean_orbit_axes(run: Trajectory) -> Floats:
-    """Return inertial unit vectors (3, 3): two in the mean orbit plane, the first along the start, and its pole."""
+    """Return inertial unit vectors (3, 3): two in the mean orbit plane, the first along the start, and its pole.
+
+    Where the pair moves on a line, the plane is one through it.
+    """
     x, v = _relative(run)
     if len(x) < 2:
-        raise InputError(f"the run has {len(x)} row: expected at least 2")
+        raise InputError(f"the run has one row only: expected at least 2, got {len(x)}")
     pole = np.cross(x, v).mean(axis=0)
-    length = np.linalg.norm(pole)
-    if not length > 1e-12 * np.linalg.norm(x[0]) * np.linalg.norm(v[0]):
-        raise InputError("the pair moves on a line: there is no orbit plane")
-    pole = pole / length
+    if not np.linalg.norm(pole) > 1e-12 * np.abs(x).max() * np.abs(v).max():  # on a line: any plane through it
+        pole = np.cross(x[0], np.eye(3)[np.argmin(np.abs(x[0]))])
+    pole = pole / np.linalg.norm(pole)
     first = x[0] - (x[0] @ pole) * pole
     first /= np.linalg.norm(first)
     return np.array([first, np.cross(pole, first), pole])
@@ -132,4 +134,6 @@ def libration_angle(run: Trajectory) -> Quantity:
 
 def _relative(run: Trajectory) -> tuple[Floats, Floats]:
     """Return position and velocity of the secondary relative to the primary, inertial."""
+    if not isinstance(run, Trajectory):
+        raise InputError(f"run: expected a ba.Trajectory, got {brief(run)}")
     return run.si.position[:, 1] - run.si.position[:, 0], run.si.velocity[:, 1] - run.si.velocity[:, 0]

@@ -10,9 +10,10 @@ from astropy.units import Quantity
 from binaryast.constants import G
 from binaryast.errors import InputError
 from binaryast.shapes import Shape
-from binaryast.units import Floats, checked, quantity, to_si
+from binaryast.units import LARGEST, Floats, as_quantity, brief, quantity, to_si
 from binaryast.values import Value
 
+LONGEST_NAME = 64
 EQUAL_MOMENTS = 1e-12  # relative difference below which two principal axes may be chosen freely
 
 
@@ -89,10 +90,12 @@ class RigidBody(Value):
         gm: Quantity | None = None,
         inertia: Quantity | None = None,
     ) -> None:
-        if not isinstance(name, str) or not name:
-            raise InputError(f"RigidBody: name: expected a text, got {name!r}")
+        if not isinstance(name, str) or not name.isprintable() or not name.strip() or len(name) > LONGEST_NAME:
+            raise InputError(
+                f"RigidBody: name: expected a printable text up to {LONGEST_NAME} characters, got {brief(repr(name))}"
+            )
         if not isinstance(shape, Shape):
-            raise InputError(f"RigidBody {name}: shape: expected a shape such as ba.Ellipsoid(...), got {shape!r}")
+            raise InputError(f"RigidBody {name}: shape: expected a shape such as ba.Ellipsoid(...), got {brief(shape)}")
         given = {"mass": mass, "density": density, "gm": gm}
         given = {key: value for key, value in given.items() if value is not None}
         if len(given) != 1:
@@ -100,6 +103,8 @@ class RigidBody(Value):
             raise InputError(f"RigidBody {name}: give exactly one of mass=, density= and gm=, got {found}")
         self._set(name=name, shape=shape, given=given | ({} if inertia is None else {"inertia": inertia}))
         mass_si, gm_si = self._masses(**given)
+        if not 1 / LARGEST < mass_si < LARGEST:
+            raise InputError(f"RigidBody {name}: a mass of {mass_si:g} kg is beyond what can be computed with")
         matrix = shape.specific_inertia * mass_si if inertia is None else self._given_inertia(inertia)
         moments, turn = principal_axes(matrix, f"RigidBody {name}: inertia")
         self._check_moments(moments)
@@ -139,7 +144,8 @@ class RigidBody(Value):
     def _given_inertia(self, inertia: Quantity) -> Floats:
         """Return the inertia matrix in the shape's frame that the user gave."""
         where = f"RigidBody {self.name}: inertia"
-        if np.shape(inertia) == (3,):
+        inertia = as_quantity(inertia, "kg m2", where)
+        if inertia.shape == (3,):
             return np.diag(to_si(inertia, "kg m2", where, shape=(3,), sign="positive"))
         return to_si(inertia, "kg m2", where, shape=(3, 3))
 
@@ -194,11 +200,13 @@ def principal_axes(matrix: Floats, name: str) -> tuple[Floats, Floats]:
     """
     scale = np.abs(matrix).max()
     if not np.allclose(matrix, matrix.T, rtol=0, atol=1e-9 * scale):
-        raise InputError(f"{name}: expected a symmetric matrix, got {matrix.tolist()}")
+        raise InputError(f"{name}: expected a symmetric matrix, got {brief(matrix.tolist())}")
     off_diagonal = matrix - np.diag(np.diag(matrix))
     if np.abs(off_diagonal).max() <= 1e-15 * scale:
         return np.diag(matrix).copy(), np.eye(3)
     moments, axes = np.linalg.eigh((matrix + matrix.T) / 2)
+    if np.ptp(moments) <= EQUAL_MOMENTS * moments.max():
+        return moments, np.eye(3)  # a top of equal moments has its axes everywhere
     candidates = (
         (moments[list(order)], axes[:, order] * signs)
         for order in permutations(range(3))
@@ -210,7 +218,7 @@ def principal_axes(matrix: Floats, name: str) -> tuple[Floats, Floats]:
         if np.linalg.det(r) > 0
     ]
     best_moments, best = max(rotations, key=lambda candidate: float(np.trace(candidate[1])))
-    return checked(best_moments.copy(), name, (3,)), best
+    return best_moments.copy(), best
 
 
 def _nearest_in_equal_planes(moments: Floats, rotation: Floats, tolerance: float) -> Floats:

@@ -66,6 +66,8 @@ def title(name: str) -> str:
 def text(name: str) -> str:
     """Return the file of an entry, to start a scenario of one's own from."""
     known = names()
+    if not isinstance(name, str):
+        raise InputError(f"expected the name of a catalogue entry, got {name!r}; there are {', '.join(known)}")
     if name not in known:
         near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
         question = f": did you mean {near[0]!r}?" if near else ""

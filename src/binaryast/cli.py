@@ -12,10 +12,10 @@ import sys
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from binaryast.constants import VERSION
 from binaryast.errors import BinaryastError, InputError
 
 if TYPE_CHECKING:
@@ -50,17 +50,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         options = parser().parse_args(_joined(arguments))
         status: int = options.command(options)
-        sys.stdout.flush()
+        if sys.stdout is not None:
+            sys.stdout.flush()
         return status
     except BrokenPipeError:  # the reader has seen enough, as in "binaryast list | head -1"
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _leave_output()
         return 0
     except KeyboardInterrupt:
         return _complain("stopped before there was anything to keep", "KeyboardInterrupt", arguments, INTERRUPTED)
-    except BinaryastError as error:
+    except BinaryastError as error:  # before OSError: a StorageError is both
         return _complain(str(error), type(error).__name__, arguments, WRONG_INPUT)
+    except OSError as error:  # standard output cannot take any more
+        _leave_output()
+        return _complain(f"standard output: {error.strerror or error}", type(error).__name__, [], FAILED)
     except MemoryError:
         return _complain("not enough memory: save less often, with --save-every", "MemoryError", arguments, FAILED)
+
+
+def _leave_output() -> None:
+    """Send what is still to be printed nowhere, so that Python does not complain at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _joined(arguments: Sequence[str]) -> list[str]:
@@ -96,7 +105,7 @@ class _Parser(argparse.ArgumentParser):
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line."""
     top = _Parser(prog="binaryast", description="Rigid bodies under mutual gravity: the full two-body problem.")
-    top.add_argument("--version", action="version", version=f"binaryast {version('binaryast')}")
+    top.add_argument("--version", action="version", version=f"binaryast {VERSION}")
     commands = top.add_subparsers(title="commands", metavar="COMMAND", required=True)
 
     listing = commands.add_parser("list", help="the systems of the catalogue")
@@ -123,7 +132,7 @@ def parser() -> argparse.ArgumentParser:
 
     plotting = commands.add_parser("plot", help="draw a run")
     _file(plotting.add_argument("file", metavar="FILE.h5", help="a run"))
-    kinds = ("orbit", "separation", "spins", "libration", "energy_exchange", "conserved")
+    kinds = ("orbit", "orbit_from_primary", "separation", "spins", "libration", "energy_exchange", "conserved")
     plotting.add_argument("--kind", choices=kinds, help="one picture instead of all on a page")
     _file(plotting.add_argument("-o", "--output", metavar="FILE.png", help="png, pdf or svg (default: FILE.png)"))
     plotting.add_argument("--force", action="store_true", help="replace a file that exists")
@@ -193,7 +202,8 @@ def _run(options: argparse.Namespace) -> int:
 
     stem = Path(options.system).stem if _is_file(options.system) else options.system
     continued = Path(options.system).suffix == ".h5"
-    output = Path(options.output or (f"{stem}-continued.h5" if continued else f"{stem}.h5"))
+    default = f"{stem}-continued.h5" if continued else f"{stem}.h5"
+    output = Path(default if options.output is None else options.output)
     picture = None if options.no_picture else Path(output.parent, f"{output.stem}.png")
     storage.refuse(output, force=options.force)
     if output.suffix not in (".h5", ".hdf5"):
@@ -225,7 +235,7 @@ def _time(text: str | None, option: str) -> Any:
     """Return the time that an option says, None where it is not given."""
     from binaryast.units import parse, quantity, to_si
 
-    return None if text is None else quantity(to_si(parse(text, "s", option), "s", option, sign="positive"), "s")
+    return None if text is None else quantity(to_si(parse(text, option, "40 s"), "s", option, sign="positive"), "s")
 
 
 def _start(
@@ -308,7 +318,8 @@ def _plot(options: argparse.Namespace) -> int:
     from binaryast import plotting, storage
     from binaryast.trajectory import Trajectory
 
-    output = Path(options.output or Path(options.file).with_suffix(".png"))
+    default = f"{Path(options.file).stem}.png"
+    output = Path(default if options.output is None else options.output)
     storage.refuse(output, force=options.force)
     path = plotting.save(Trajectory.read(options.file), output, kind=options.kind, force=options.force)
     print(f"written: {path}")

@@ -6,14 +6,16 @@ The paper's body 1 is the secondary, its body 2 the primary; U(X, R) is in the p
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError
-from binaryast.units import Floats
+from binaryast.units import Floats, brief, numbers
 from binaryast.values import Value
+
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Gravity(Value, ABC):
@@ -149,9 +151,14 @@ class PairPotential(Gravity):
     values: Sequence[float] = ()
 
     def __post_init__(self) -> None:
-        if not isinstance(self.function, str) and not hasattr(self.function, "py_func"):
-            raise InputError(f"PairPotential: {self.function!r} is not compiled: decorate it with @ba.pair_potential")
-        self._set(values=np.array(self.values, dtype=np.float64))
+        from binaryast.kernels.jit import PAIR_POTENTIAL
+
+        if not isinstance(self.function, str) and PAIR_POTENTIAL.args not in getattr(self.function, "overloads", {}):
+            raise InputError(
+                f"PairPotential: {brief(self.function)} is not compiled: decorate it with @ba.pair_potential"
+            )
+        count = len(self.values) if isinstance(self.values, (Sequence, np.ndarray)) else 0
+        self._set(values=numbers(self.values, "PairPotential: values", (count,)).copy())
 
     @property
     def potential(self) -> Callable[..., Any]:
@@ -165,3 +172,47 @@ class PairPotential(Gravity):
     def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
         """Return the user's parameters."""
         return np.array(self.values)
+
+
+def pair_potential(function: Function) -> Function:
+    """Compile a user's mutual potential of a pair, for `binaryast.PairPotential`.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(p, x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33)``: parameters ``p`` (float array), the
+        secondary's centre X [m] and attitude R (row by row) in the primary's frame. It returns seven floats: U [J],
+        dU/dX [N] and the moment M [N m] of equation (54) of Lee, Leok and McClamroch (2007), which is minus the torque
+        on the secondary, in the primary's frame.
+
+    Returns
+    -------
+    callable
+        The compiled function. It can still be called from Python.
+
+    Raises
+    ------
+    InputError
+        Where numba cannot compile it to that signature.
+
+    Examples
+    --------
+    >>> import binaryast as ba
+    >>> @ba.pair_potential
+    ... def kepler(p, x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33):
+    ...     r = (x * x + y * y + z * z) ** 0.5
+    ...     w = p[0] / r**3
+    ...     return -p[0] / r, w * x, w * y, w * z, 0.0, 0.0, 0.0
+    """
+    from numba.core.errors import NumbaError
+
+    from binaryast.kernels.jit import compile_pair_potential
+
+    try:
+        return compile_pair_potential(function)
+    except (NumbaError, TypeError) as error:
+        reason = next((line.strip() for line in str(error).splitlines()[1:] if line.strip()), brief(error))
+        raise InputError(
+            f"pair_potential: {getattr(function, '__name__', function)} cannot be compiled: {brief(reason)}; expected "
+            "13 arguments (p, x, y, z, r11 .. r33) and seven floats as the result"
+        ) from None

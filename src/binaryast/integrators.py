@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 from astropy.units import Quantity
 
 from binaryast.errors import InputError
-from binaryast.units import quantity, to_si
+from binaryast.units import brief, quantity, to_si
 from binaryast.values import Value
 
 
@@ -47,13 +47,13 @@ class LGVI(Integrator):
     """The Lie group variational integrator: equations (118)-(127) of Lee, Leok and McClamroch (2007).
 
     Symplectic, momentum-preserving, reversible, and on SE(3) by construction; its energy error stays bounded. Its
-    attitudes lag by Omega t (h Omega)^2/6, which an energy plot does not show: choose the step by the fastest spin.
+    attitudes run ahead by Omega t (h Omega)^2/6, which energy does not show: choose the step by the fastest spin.
 
     Parameters
     ----------
     step : Quantity
         The largest step h (time). A run uses the largest step below it that divides its segments. A step with
-        h Omega >= 1 has no solution.
+        h Omega >= 1 is refused: about a principal axis (128) then has no solution.
     order : int
         2; higher orders by composition are not in this version.
 
@@ -84,8 +84,8 @@ class LGVI(Integrator):
 
     def __post_init__(self) -> None:
         self._set(step=quantity(float(to_si(self.step, "s", "step", sign="positive")), "s"))
-        if self.order != 2 or isinstance(self.order, bool):
-            raise InputError(f"LGVI: order={self.order!r}: this version has order 2")
+        if not isinstance(self.order, int) or self.order != 2:
+            raise InputError(f"LGVI: order={brief(self.order)}: this version has order 2")
 
     @property
     def kernel(self) -> Callable[..., Any]:
@@ -96,5 +96,5 @@ class LGVI(Integrator):
 
     @property
     def largest_turn(self) -> float:
-        """The turn h Omega [rad] at and above which a step has no solution: (128) says sin(theta) = h Omega."""
+        """The turn h Omega [rad] at and above which a step is refused: (128) says sin(theta) = h Omega."""
         return 1.0

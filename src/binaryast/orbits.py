@@ -11,9 +11,9 @@ from scipy.spatial.transform import Rotation
 
 from binaryast.errors import InputError, UnitError
 from binaryast.system import System
-from binaryast.units import Floats, numbers, to_si
+from binaryast.units import Floats, brief, numbers, to_si
 
-PHASES = 24  # of a body that turns freely, in the mean over its turn: exact up to that degree
+PHASES = 24  # of a body that turns freely, in the mean over its turn: exact below that degree
 
 
 class Motion(NamedTuple):
@@ -83,6 +83,7 @@ def from_elements(
     semi_major_axis: Quantity,
     eccentricity: float,
     angles: dict[str, Quantity],
+    true_anomaly: Quantity | None,
     mean_anomaly: Quantity | None,
     pole: Any,
     spins: Sequence[Any],
@@ -94,10 +95,11 @@ def from_elements(
         raise InputError(
             f"eccentricity: expected 0 <= e < 1, got {e:g}; give an unbound orbit by its vectors to ba.State"
         )
-    i, node, apse, anomaly = (float(to_si(value, "rad", name)) for name, value in angles.items())
+    i, node, apse = (float(to_si(value, "rad", name)) for name, value in angles.items())
+    if true_anomaly is not None and mean_anomaly is not None:
+        raise InputError("from_elements: give at most one of true_anomaly= and mean_anomaly=")
+    anomaly = 0.0 if true_anomaly is None else float(to_si(true_anomaly, "rad", "true_anomaly"))
     if mean_anomaly is not None:
-        if anomaly != 0:
-            raise InputError("from_elements: give at most one of true_anomaly= and mean_anomaly=")
         anomaly = _true_anomaly(float(to_si(mean_anomaly, "rad", "mean_anomaly")), e)
     gm = system.primary.si.gm + system.secondary.si.gm
     plane = pole_axes(pole) @ Rotation.from_euler("ZXZ", [node, i, apse]).as_matrix()
@@ -125,13 +127,14 @@ def pole_axes(pole: Any) -> Floats:
     """
     if pole is None:
         return np.eye(3)
-    if isinstance(pole, Quantity) or any(isinstance(item, Quantity) for item in pole):
+    if is_celestial(pole):
         ascension, declination = to_si(pole, "rad", "pole (right ascension, declination)", shape=(2,))
         z = np.array([cos(declination) * cos(ascension), cos(declination) * sin(ascension), sin(declination)])
     else:
         z = numbers(pole, "pole", (3,))
         if not np.any(z):
             raise InputError("pole: expected a vector that is not zero")
+        z = z / np.abs(z).max()
         z = z / np.linalg.norm(z)
     node = np.array([-z[1], z[0], 0.0])
     length = np.linalg.norm(node)
@@ -141,10 +144,17 @@ def pole_axes(pole: Any) -> Floats:
     return np.column_stack([np.cross(y, z), y, z])
 
 
+def is_celestial(pole: Any) -> bool:
+    """Whether a pole is given by right ascension and declination."""
+    return isinstance(pole, Quantity) or (
+        isinstance(pole, (list, tuple)) and any(isinstance(item, Quantity) for item in pole)
+    )
+
+
 def _two(spins: Sequence[Any]) -> Sequence[Any]:
     """Return the spins of the two bodies, or say what is expected."""
-    if isinstance(spins, (str, Quantity)) or len(spins) != 2:
-        raise InputError(f"spins: expected one for each body, primary first, got {spins!r}")
+    if not isinstance(spins, (list, tuple)) or len(spins) != 2:
+        raise InputError(f"spins: expected a list of one for each body, primary first, got {brief(spins)}")
     return spins
 
 
@@ -168,7 +178,7 @@ def _spin_vector(spin: Any, name: str, rate: float) -> Floats:
             return np.array([0.0, 0.0, float(to_si(spin, "rad / s", name))])
         return to_si(spin, "rad / s", name, shape=(3,))
     raise UnitError(
-        f"{name}={spin!r}: expected a period such as 2.26 * u.h, a rate such as 1e-4 * u.rad / u.s, "
+        f"{name}={brief(spin)}: expected a period such as 2.26 * u.h, a rate such as 1e-4 * u.rad / u.s, "
         'a vector of three rates in the body frame, or "synchronous"'
     )
 

@@ -1,6 +1,7 @@
 """Figures of a trajectory: each takes an Axes or makes one, and returns it."""
 
 import io
+import textwrap
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,9 +13,9 @@ from matplotlib.patches import Polygon
 
 from binaryast.analysis import libration_angle, mean_orbit_axes
 from binaryast.errors import InputError
-from binaryast.storage import refuse, replace_whole
+from binaryast.storage import as_path, refuse, replace_whole
 from binaryast.trajectory import Trajectory
-from binaryast.units import Floats
+from binaryast.units import Floats, brief
 
 PRIMARY, SECONDARY, DARK = "#1f4e79", "#c8553d", "#333333"
 COLOURS = (PRIMARY, SECONDARY)
@@ -27,6 +28,11 @@ def _time(run: Trajectory) -> tuple[Floats, str]:
         if end >= 2 * size:
             return run.si.time / size, unit
     return run.si.time, "s"
+
+
+def _plain(text: str) -> str:
+    """Return a text that matplotlib does not take for a formula."""
+    return text.replace("$", r"\$")
 
 
 def _length(largest: float) -> tuple[float, str]:
@@ -89,13 +95,13 @@ def orbit(run: Trajectory, ax: Axes | None = None, *, frame: str = "inertial") -
         relative = run.relative
         paths = np.stack([np.zeros_like(relative.X.value), relative.X.value], axis=1)
         attitudes = np.array([np.eye(3), relative.R[-1]])
-        place, subject = "in the primary's axes", f"Seen from {run.system.names[0]}, turning with it"
+        place, subject = "in the primary's axes", f"Seen from {_plain(run.system.names[0])}, turning with it"
     else:
         raise InputError(f"orbit: frame={frame!r}: expected 'inertial' or 'primary'")
     size, unit = _length(float(np.abs(paths).max()))
     for i, body in enumerate(run.system.bodies):
         path = paths[:, i] @ plane.T / size
-        ax.plot(*path.T, _style(path), color=COLOURS[i], lw=0.7, ms=1.5, alpha=0.7, label=body.name)
+        ax.plot(*path.T, _style(path), color=COLOURS[i], lw=0.7, ms=1.5, alpha=0.7, label=_plain(body.name))
         drawn = False
         for centre, matrix in body.surface:
             corners = _outline(plane @ attitudes[i] @ matrix @ attitudes[i].T @ plane.T)
@@ -108,6 +114,11 @@ def orbit(run: Trajectory, ax: Axes | None = None, *, frame: str = "inertial") -
     ax.grid(alpha=0.25)
     ax.legend(loc="upper right", fontsize="small", markerscale=4)
     return ax
+
+
+def orbit_from_primary(run: Trajectory, ax: Axes | None = None) -> Axes:
+    """Draw `orbit` as seen from the primary."""
+    return orbit(run, ax, frame="primary")
 
 
 def _style(path: Floats) -> str:
@@ -139,7 +150,7 @@ def spins(run: Trajectory, ax: Axes | None = None) -> Axes:
     relative = bool(np.all(rates[0] > 0))
     for i, name in enumerate(run.system.names):
         values = rates[:, i] / rates[0, i] - 1 if relative else rates[:, i]
-        label = f"{name}: {2 * np.pi / rates[0, i] / 3600:.4g} h at the start" if relative else name
+        label = _plain(name) + (f": {2 * np.pi / rates[0, i] / 3600:.4g} h at the start" if relative else "")
         ax.plot(_time(run)[0], values, color=COLOURS[i], lw=0.8, label=label)
     ax.legend(loc="best", fontsize="small")
     return _over_time(ax, run, "spin rate / that at the start - 1" if relative else "spin rate [rad/s]", "Spins")
@@ -149,7 +160,7 @@ def libration(run: Trajectory, ax: Axes | None = None) -> Axes:
     """Draw the angle from the line of centres to the secondary's x axis against time."""
     ax = _axes(ax)
     ax.plot(_time(run)[0], np.degrees(libration_angle(run).value), color=SECONDARY, lw=0.8)
-    return _over_time(ax, run, "libration angle [deg]", f"Libration of {run.system.names[1]}")
+    return _over_time(ax, run, "libration angle [deg]", f"Libration of {_plain(run.system.names[1])}")
 
 
 def energy_exchange(run: Trajectory, ax: Axes | None = None) -> Axes:
@@ -173,8 +184,8 @@ def conserved(run: Trajectory, ax: Axes | None = None) -> Axes:
     time, _ = _time(run)
     energy, momentum = run.energy.value, run.angular_momentum.value
     curves: tuple[tuple[Floats, str, str], ...] = (
-        (np.abs(energy / energy[0] - 1), "energy", PRIMARY),
-        (np.linalg.norm(momentum - momentum[0], axis=1) / np.linalg.norm(momentum[0]), "angular momentum", SECONDARY),
+        (_relative_error(energy[:, None]), "energy", PRIMARY),
+        (_relative_error(momentum), "angular momentum", SECONDARY),
         (run.rotation_error, r"rotation, $\|I - R^T R\|$", "#6a994e"),
     )
     floor = np.finfo(float).eps / 4  # an error of zero has no logarithm
@@ -184,8 +195,15 @@ def conserved(run: Trajectory, ax: Axes | None = None) -> Axes:
     return _over_time(ax, run, "relative error", "What should be conserved")
 
 
+def _relative_error(values: Floats) -> Floats:
+    """Return the distance (N,) of vectors (N, k) from the first, over its size; as it is where that is zero."""
+    size = float(np.linalg.norm(values[0]))
+    return np.asarray(np.linalg.norm(values - values[0], axis=1) / (size if size > 0 else 1.0))
+
+
 KINDS: dict[str, Callable[..., Any]] = {
     "orbit": orbit,
+    "orbit_from_primary": orbit_from_primary,
     "separation": separation,
     "spins": spins,
     "libration": libration,
@@ -223,15 +241,22 @@ def overview(run: Trajectory, figure: Figure | None = None) -> Figure:
     figure.set_size_inches(18, 8.5)
     axes = figure.subplots(2, 4)
     figure.subplots_adjust(left=0.045, right=0.985, bottom=0.07, top=0.9, wspace=0.36, hspace=0.3)
-    figure.suptitle(f"{' and '.join(run.system.names)}: {_title(run)}")
-    orbit(run, axes[0, 0])
-    orbit(run, axes[1, 0], frame="primary")
-    separation(run, axes[0, 1])
-    libration(run, axes[1, 1])
-    spins(run, axes[0, 2])
-    energy_exchange(run, axes[1, 2])
-    conserved(run, axes[0, 3])
-    _figures(run, axes[1, 3])
+    figure.suptitle(_plain(f"{' and '.join(run.system.names)}: {_title(run)}"))
+    panels: dict[Callable[..., Any], Axes] = {
+        orbit: axes[0, 0],
+        orbit_from_primary: axes[1, 0],
+        separation: axes[0, 1],
+        libration: axes[1, 1],
+        spins: axes[0, 2],
+        energy_exchange: axes[1, 2],
+        conserved: axes[0, 3],
+        _figures: axes[1, 3],
+    }
+    for draw, ax in panels.items():
+        try:
+            draw(run, ax)
+        except InputError as error:  # such as libration on a line: the other pictures are worth having
+            ax.text(0.5, 0.5, "\n".join(textwrap.wrap(str(error), 30)), ha="center", transform=ax.transAxes)
     return figure
 
 
@@ -283,9 +308,9 @@ def save(run: Trajectory, path: str | Path, *, kind: str | None = None, force: b
     InputError
         For an unknown kind or format.
     """
-    path = Path(path)
+    path = as_path(path)
     refuse(path, force=force)
-    if kind is not None and kind not in KINDS:
+    if kind is not None and str(kind) not in KINDS:
         raise InputError(f"{kind!r} is not a kind of picture: expected one of {', '.join(KINDS)}")
     memory = io.BytesIO()
     try:
@@ -295,6 +320,6 @@ def save(run: Trajectory, path: str | Path, *, kind: str | None = None, force: b
             figure = Figure(layout="constrained")
             KINDS[kind](run, figure.subplots())
         figure.savefig(memory, format=path.suffix.lstrip(".") or "png", dpi=110)
-    except ValueError as error:
-        raise InputError(f"{path}: {error}") from None
+    except (ValueError, RuntimeError) as error:
+        raise InputError(f"{path}: {brief(error)}") from None
     return replace_whole(path, memory.getvalue(), force=force)

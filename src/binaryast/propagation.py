@@ -26,11 +26,13 @@ from binaryast.kernels.measure import pair_measure
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.trajectory import Trajectory, TrajectoryFloats
-from binaryast.units import Floats, quantity, to_si
+from binaryast.units import Floats, brief, quantity, to_si
 
 MOST_ROWS_BY_DEFAULT = 2000
 MOST_ROWS = 10_000_000
+MOST_STEPS = 10**15  # beyond it, times would lose digits
 SLACK = 1e-9  # relative: a duration of 8640.000000001 saving intervals has 8640 of them
+DOUBTFUL_ENERGY_ERROR = 0.01
 DOUBTFUL_TURN = 2 * pi / 20  # rad in one step
 CHUNK_SECONDS = 0.1  # between two looks at the keyboard
 
@@ -104,7 +106,7 @@ def propagate(
     end = float(to_si(duration, "s", "duration", sign="positive"))
     interval = None if save_every is None else float(to_si(save_every, "s", "save_every", sign="positive"))
     segments = schedule(end, integrator.step.value, interval)
-    _check_turns(system, state, integrator, segments[0].step)
+    _check_turns(system, state, integrator, max(segment.step for segment in segments))
     run = _Run(system, state, integrator, segments)
     with _bar(end, progress) as show:
         run.go(show)
@@ -117,6 +119,8 @@ def schedule(end: float, step: float, interval: float | None) -> list[Segment]:
         raise StepError(
             f"step: {step:g} s is longer than the run of {end:g} s: give a smaller step or a longer duration"
         )
+    if end / step > MOST_STEPS:
+        raise StepError(f"step: {step:g} s makes {end / step:.3g} steps of the run of {end:g} s, expected at most 1e15")
     if interval is None:
         count = ceil(end / step * (1 - SLACK))
         stride = _stride(count)
@@ -126,13 +130,13 @@ def schedule(end: float, step: float, interval: float | None) -> list[Segment]:
         if interval > end * (1 + SLACK):
             raise StepError(f"save_every: {interval:g} s is longer than the run of {end:g} s")
         stride = ceil(interval / step * (1 - SLACK))
-        whole = floor(end / interval * (1 + SLACK))
+        whole = floor(min(end / interval * (1 + SLACK), 2 * MOST_ROWS))
         if whole > MOST_ROWS:
             raise InputError(
-                f"save_every: {interval:g} s would keep {whole} rows, expected at most {MOST_ROWS}: save less often"
+                f"save_every: {interval:g} s would keep {end / interval:.3g} rows, at most {MOST_ROWS} are possible"
             )
         remaining = end - whole * interval
-        rest = ceil(remaining / step * (1 - SLACK)) if remaining > SLACK * interval else 0
+        rest = ceil(remaining / (interval / stride) * (1 - SLACK)) if remaining > SLACK * interval else 0
         segments = [
             Segment(interval / stride, whole * stride, stride),
             Segment(remaining / max(rest, 1), rest, max(rest, 1)),
@@ -143,7 +147,7 @@ def schedule(end: float, step: float, interval: float | None) -> list[Segment]:
 def _stride(count: int) -> int:
     """Return how many steps lie between rows by default: few enough rows, and a divisor where one is near."""
     least = ceil(count / MOST_ROWS_BY_DEFAULT)
-    return next((stride for stride in range(least, 2 * least) if count % stride == 0), least)
+    return next((stride for stride in range(least, min(2 * least, least + 10_000)) if count % stride == 0), least)
 
 
 def _check_kinds(system: Any, state: Any, integrator: Any) -> None:
@@ -154,7 +158,7 @@ def _check_kinds(system: Any, state: Any, integrator: Any) -> None:
         ("integrator", integrator, Integrator),
     ):
         if not isinstance(value, kind):
-            raise InputError(f"{name}: expected a {kind.__name__}, got {value!r}")
+            raise InputError(f"{name}: expected an object of class {kind.__name__}, got {brief(value)}")
     if len(state.si.position) != len(system.bodies):
         raise InputError(f"state: it has {len(state.si.position)} bodies, the system has {len(system.bodies)}")
 
@@ -164,23 +168,23 @@ def _check_turns(system: System, state: State, integrator: Integrator, step: flo
     for body, spin in zip(system.bodies, np.linalg.norm(state.si.spin, axis=1), strict=True):
         turn = step * spin
         if turn >= integrator.largest_turn:
-            raise _turn_error(body.name, float(spin), integrator)
+            raise _turn_error(body.name, float(spin), integrator, step)
         if turn > DOUBTFUL_TURN:
             warnings.warn(
-                f"a step of {step:g} s turns {body.name} by {turn:.2g} rad: its attitude will lag by about "
-                f"{turn**3 / 6:.2g} rad a step; {0.05 * step / turn:.3g} s would turn it by 0.05 rad",
+                f"a step of {step:g} s turns {body.name} by {turn:.2g} rad: its attitude will run ahead by "
+                f"about {turn**3 / 6:.2g} rad a step; {0.05 * step / turn:.3g} s would turn it by 0.05 rad",
                 StepWarning,
                 stacklevel=3,
             )
 
 
-def _turn_error(name: str, spin: float, integrator: Integrator) -> StepError:
+def _turn_error(name: str, spin: float, integrator: Integrator, step: float) -> StepError:
     """Return the error of a step that turns a body too far."""
     largest = integrator.largest_turn / spin
     return StepError(
-        f"step: {name} spins at {spin:.6g} rad/s (once in {2 * pi / spin / 3600:.4g} h); the implicit equation (128) "
-        f"has a solution only for h Omega < {integrator.largest_turn:g}, so the step must be below {largest:.6g} s, "
-        f"got {integrator.step.value:g} s"
+        f"step: {name} spins at {spin:.6g} rad/s (once in {2 * pi / spin / 3600:.4g} h), h Omega = {step * spin:.4g}; "
+        f"the implicit equation (128) has a solution only below {integrator.largest_turn:g}: the step must be below "
+        f"{largest:.6g} s, got {step:g} s"
     )
 
 
@@ -200,20 +204,25 @@ class _Run:
         self.times: list[Floats] = [np.zeros(1)]
         self.code = status.COMPLETED
         self.pressed: list[int] = []
+        self.raised = ""
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
         self._begin()
 
     def _begin(self) -> None:
         """Look at the start: overlap, a potential that is not a number; and keep the references."""
         energy, *momentum, rotation_error, separation = pair_measure(self.state, self.constants)
-        if separation == 0 or (separation < self.surfaces[0] and pair_touches(self.state, self.surfaces)):
+        if separation == 0 or (
+            separation < self.surfaces[0] and pair_touches(self.state, self.surfaces, *self.state[:3])
+        ):
             primary, secondary = self.system.names
             raise ContactError(
                 f"state: {primary} and {secondary} overlap at the start, {separation:g} m apart: "
                 "expected surfaces that do not touch; move them further apart"
             )
-        if not np.isfinite(energy):
-            raise InputError("state: the energy at the start is not a number: look at positions and gravity")
+        if not (np.isfinite(energy) and np.all(np.isfinite(self.state))):
+            raise InputError(
+                "state: energy, force or torque at the start is not a number: look at the positions and at the gravity"
+            )
         self.watch[loop.ENERGY] = energy
         self.watch[loop.ANGULAR_MOMENTUM : loop.ANGULAR_MOMENTUM + 3] = momentum
         self.watch[loop.ROTATION_ERROR] = rotation_error
@@ -241,7 +250,17 @@ class _Run:
         ):
             began = time.perf_counter()
             count = min(chunk, left)
-            self.code = loop.advance(
+            self.code = self._advance(segment, count, rows)
+            spent = time.perf_counter() - began
+            self.wall_time += spent
+            chunk = max(1000, int(count * CHUNK_SECONDS / max(spent, 1e-6)))
+            show(self.elapsed + self.watch[loop.STEPS] * segment.step)
+        self._keep(segment)
+
+    def _advance(self, segment: Segment, count: int, rows: Floats) -> int:
+        """Call the compiled loop; a potential of the user's that raises ends the run like any other trouble."""
+        try:
+            code: int = loop.advance(
                 self.integrator.kernel,
                 pair_measure,
                 pair_touches,
@@ -256,11 +275,10 @@ class _Run:
                 segment.stride,
                 rows,
             )
-            spent = time.perf_counter() - began
-            self.wall_time += spent
-            chunk = max(1000, int(count * CHUNK_SECONDS / max(spent, 1e-6)))
-            show(self.elapsed + self.watch[loop.STEPS] * segment.step)
-        self._keep(segment)
+        except Exception as error:  # whatever the user's function raises
+            self.raised = f"the potential raised {type(error).__name__}: {brief(error)}"
+            return status.NOT_FINITE
+        return code
 
     def _keep(self, segment: Segment) -> None:
         """Close a segment: its saved rows with their times, and the last state where that is not one of them."""
@@ -284,6 +302,15 @@ class _Run:
         ended, message = self._end()
         if ended in ("contact", "failed"):
             warnings.warn(f"the run ended after {self.elapsed:g} s: {message}", EndWarning, stacklevel=3)
+        figures = self._figures(motion)
+        error = min(figures["max_relative_energy_error"], figures["max_energy_error_over_potential"])
+        if error > DOUBTFUL_ENERGY_ERROR:
+            warnings.warn(
+                f"the energy was wrong by {error:.2g} of its size at some step: a step of {self.segments[0].step:g} s "
+                "is too large for what happened, such as a close approach",
+                StepWarning,
+                stacklevel=3,
+            )
         return Trajectory(
             system=self.system,
             integrator=self.integrator,
@@ -296,7 +323,7 @@ class _Run:
             step=quantity(self.segments[0].step, "s"),
             wall_time=quantity(self.wall_time, "s"),
             provenance=provenance(),
-            **self._figures(motion),
+            **figures,
         )
 
     def _figures(self, motion: working.Motion) -> dict[str, Any]:
@@ -328,7 +355,8 @@ class _Run:
         if self.code == status.CONTACT:
             return "contact", f"{secondary} touched {primary} within a step of {self.elapsed:g} s"
         if self.code == status.NOT_FINITE:
-            return "failed", "the energy is not a number any more: the bodies came too close for this step"
+            reason = self.raised or "positions, momenta or gravity are not numbers any more"
+            return "failed", f"{reason}; the last good row is at {self.elapsed:g} s"
         if self.code != status.COMPLETED:
             return "failed", str(self._turn_error())
         return "completed", ""
@@ -338,7 +366,11 @@ class _Run:
         secondary = self.code == status.NO_ROTATION_1
         body = self.system.secondary if secondary else self.system.primary
         at = layout.MOMENTUM_1 if secondary else layout.MOMENTUM_2
-        return _turn_error(body.name, float(np.linalg.norm(self.state[at : at + 3] / body.si.moments)), self.integrator)
+        torque = layout.TORQUE_1 if secondary else layout.TORQUE_2
+        step = max(segment.step for segment in self.segments)
+        momentum = self.state[at : at + 3] + step / 2 * self.state[torque : torque + 3]
+        spin = float(np.linalg.norm(momentum / body.si.moments))
+        return _turn_error(body.name, spin, self.integrator, step)
 
 
 def _over(error: float, size: float) -> float:
@@ -385,7 +417,7 @@ def _bar(end: float, progress: bool) -> Iterator[Any]:
 def provenance() -> dict[str, str]:
     """Return what is needed to repeat a run: versions, sources, machine, date, and G."""
     return {
-        "binaryast": version("binaryast"),
+        "binaryast": constants.VERSION,
         "kernels": source_hash(),
         "python": platform.python_version(),
         **{name: version(name) for name in ("numpy", "scipy", "numba", "astropy", "h5py")},

@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import astropy.units as u
 from astropy.time import Time
 from astropy.units import Quantity
 
@@ -21,13 +20,27 @@ from binaryast.bodies import RigidBody
 from binaryast.errors import InputError, ScenarioError, StorageError
 from binaryast.integrators import LGVI, Integrator
 from binaryast.state import RelativeState, State
+from binaryast.storage import as_path
 from binaryast.system import System
-from binaryast.units import parse, to_si
+from binaryast.units import brief, parse, quantity, to_si
 from binaryast.values import Value
 
 SHAPES = {kind.__name__: kind for kind in (shapes.Ellipsoid, shapes.Sphere, shapes.Dumbbell, shapes.PointCloud)}
 GRAVITIES = {kind.__name__: kind for kind in (gravity.SecondDegree, gravity.PointPairs, gravity.PointMass)}
 STATES = ("circular_orbit", "from_elements", "inertial", "relative")
+PLAIN = ("weights", "eccentricity", "R", "R2", "attitude", "epoch", "frame")  # arguments that have no unit
+EXAMPLES = {  # what a text with a unit looks like
+    "velocity": "[[0, 0, 0], [0, 17, 0]] cm / s",
+    "position": "[[0, 0, 0], [1, 0, 0]] km",
+    "spin": "[[0, 0, 1], [0, 0, 1]] deg / min",
+    "spins": "2.26 h",
+    "pole": "10 deg",
+    "period": "12 h",
+    "V": "[0, 1, 0] m / s",
+    "V2": "[0, 1, 0] m / s",
+    "Omega": "[0, 0, 1] deg / min",
+    "Omega2": "[0, 0, 1] deg / min",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,12 +93,12 @@ def load(path: str | Path) -> Scenario:
     ScenarioError
         Where it is not a scenario: the key, what was found and what was expected.
     """
-    path = Path(path)
+    path = as_path(path)
     try:
         text = path.read_text(encoding="utf-8")
     except FileNotFoundError:
         raise StorageError(f"{path}: no such file") from None
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         raise StorageError(f"{path}: cannot be read as text: {error}") from None
     return loads(text, name=path.stem, where=str(path))
 
@@ -94,8 +107,8 @@ def loads(text: str, *, name: str, where: str) -> Scenario:
     """Return the scenario that a text says; ``where`` is what its errors begin with."""
     try:
         tables = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ScenarioError(f"{where}: not TOML: {error}") from None
+    except (ValueError, RecursionError) as error:
+        raise ScenarioError(f"{where}: not TOML: {brief(error)}") from None
     try:
         return _scenario(tables, name, text)
     except InputError as error:
@@ -118,10 +131,10 @@ def _scenario(tables: dict[str, Any], name: str, text: str) -> Scenario:
         title=_text(tables.get("title", name), "title"),
         system=system,
         state=_state(_table(tables, "state"), system),
-        integrator=LGVI(_quantity(run["step"], "s", "run.step")),
-        duration=_quantity(run["duration"], "s", "run.duration"),
-        save_every=_quantity(run["save_every"], "s", "run.save_every") if "save_every" in run else None,
-        sources=tuple(_source(source, f"sources[{i}]") for i, source in enumerate(tables.get("sources", []))),
+        integrator=LGVI(_time(run["step"], "run.step")),
+        duration=_time(run["duration"], "run.duration"),
+        save_every=_time(run["save_every"], "run.save_every") if "save_every" in run else None,
+        sources=_sources(tables.get("sources", [])),
         text=text,
     )
 
@@ -131,9 +144,9 @@ def _body(table: dict[str, Any], where: str) -> RigidBody:
     _known(table, ("name", "shape", "mass", "density", "gm", "inertia"), f"{where}.")
     _needed(table, ("name", "shape"), f"{where}.")
     units = {"mass": "kg", "density": "kg / m3", "gm": "m3 / s2", "inertia": "kg m2"}
-    given = {key: _text(table[key], f"{where}.{key}") for key in units if key in table}
+    given = {key: _text(table[key], f"{where}.{key}", unit) for key, unit in units.items() if key in table}
     shape = _typed(_table(table, "shape", f"{where}."), SHAPES, f"{where}.shape")
-    quantities = {key: parse(text, units[key], f"{where}.{key}") for key, text in given.items()}
+    quantities = {key: parse(text, f"{where}.{key}", f"1 {units[key]}") for key, text in given.items()}
     return RigidBody(table["name"], shape, **quantities)
 
 
@@ -162,9 +175,6 @@ def _state(table: dict[str, Any], system: System) -> State:
         when = {key: arguments.pop(key) for key in ("epoch", "frame") if key in arguments}
         relative: RelativeState = _call(RelativeState, {}, arguments, "state")
         return relative.to_state(system, **when)
-    for key in ("spins", "pole"):
-        if key in arguments:
-            arguments[key] = _several(arguments[key], f"state.{key}")
     return _call(getattr(State, kind), {"system": system}, arguments, "state")  # type: ignore[no-any-return]
 
 
@@ -173,38 +183,30 @@ def _call(function: Callable[..., Any], ready: dict[str, Any], arguments: dict[s
     parameters = [p for p in inspect.signature(function).parameters.values() if p.name not in ready]
     _known(arguments, [p.name for p in parameters], f"{where}.")
     _needed(arguments, [p.name for p in parameters if p.default is inspect.Parameter.empty], f"{where}.")
+    given = {key: _argument(value, key, f"{where}.{key}") for key, value in arguments.items()}
     try:
-        return function(**ready, **arguments)
+        return function(**ready, **given)
     except InputError as error:
         raise InputError(f"{where}: {error}") from None
 
 
-def _several(value: Any, where: str) -> Any:
-    """Return a list of texts as quantities, as far as they are some: spins and poles."""
-    if not isinstance(value, list):
-        raise InputError(f"{where}: expected a list, got {value!r}")
-    return [_any_quantity(item, f"{where}[{i}]") if isinstance(item, str) else item for i, item in enumerate(value)]
+def _argument(value: Any, key: str, where: str) -> Any:
+    """Return an argument of a constructor: a quantity from its text, lists of them, and what is in `PLAIN` as it is."""
+    if key in PLAIN:
+        return value
+    if isinstance(value, list):
+        return [
+            _argument(item, key, f"{where}[{i}]") if isinstance(item, str) else item for i, item in enumerate(value)
+        ]
+    example = EXAMPLES.get(key, "1 m")
+    if value == "synchronous":
+        return value
+    return parse(_text(value, where, example.lstrip("[0123456789, ]")), where, example)
 
 
-def _any_quantity(text: str, where: str) -> Any:
-    """Return a quantity of whatever kind the text is, or the word ``synchronous``."""
-    if text == "synchronous":
-        return text
-    if text.lstrip().startswith("["):
-        return parse(text, "rad / s", where)
-    try:
-        return Quantity(text)
-    except (TypeError, ValueError):
-        raise InputError(
-            f'{where}: {text!r} is not understood: expected such as "2.26 h", "1e-4 rad / s" or "synchronous"'
-        ) from None
-
-
-def _quantity(value: Any, unit: str, where: str) -> Quantity:
-    """Return a quantity of a known kind."""
-    if not isinstance(value, str):
-        raise InputError(f'{where}: expected a text with a unit such as "{value} {unit}", got {value!r}')
-    return to_si(parse(value, unit, where), unit, where, sign="positive") << u.Unit(unit)
+def _time(value: Any, where: str) -> Quantity:
+    """Return a time that is longer than nothing."""
+    return quantity(to_si(parse(_text(value, where, "s"), where, "1 s"), "s", where, sign="positive"), "s")
 
 
 def _epoch(value: Any) -> Time:
@@ -213,28 +215,39 @@ def _epoch(value: Any) -> Time:
     scale = words.pop().lower() if len(words) > 1 and words[-1].isalpha() else "tdb"
     try:
         return Time("T".join(words), scale=scale)
-    except ValueError:
-        raise InputError(f'state.epoch: {value!r} is no date: expected such as "2022-09-26T23:14:24 UTC"') from None
+    except Exception:  # astropy has several, none of them short
+        raise InputError(
+            f'state.epoch: {brief(value)!r} is no date: expected such as "2022-09-26T23:14:24 UTC"'
+        ) from None
 
 
 def _table(tables: dict[str, Any], key: str, where: str = "") -> dict[str, Any]:
     """Return a table, empty where it is missing."""
     table = tables.get(key, {})
     if not isinstance(table, dict):
-        raise InputError(f"{where}{key}: expected a table, got {table!r}")
+        raise InputError(f"{where}{key}: expected a table, got {brief(table)}")
     return table
 
 
-def _text(value: Any, where: str) -> str:
+def _text(value: Any, where: str, unit: str = "") -> str:
     if not isinstance(value, str):
-        raise InputError(f"{where}: expected a text in quotes, with a unit if it is a quantity, got {value!r}")
+        number = value if isinstance(value, (int, float)) else 1
+        kind = f'a text with a unit such as "{number} {unit}"' if unit else "a text in quotes"
+        raise InputError(f"{where}: expected {kind}, got {brief(value)}")
     return value
+
+
+def _sources(value: Any) -> tuple[dict[str, str], ...]:
+    """Return where the numbers come from."""
+    if not isinstance(value, list):
+        raise InputError(f"sources: expected tables [[sources]], got {brief(value)}")
+    return tuple(_source(source, f"sources[{i}]") for i, source in enumerate(value))
 
 
 def _source(table: Any, where: str) -> dict[str, str]:
     """Return where a number comes from."""
     if not isinstance(table, dict):
-        raise InputError(f"{where}: expected a table, got {table!r}")
+        raise InputError(f"{where}: expected a table, got {brief(table)}")
     _known(table, ("what", "source", "uncertainty", "note"), f"{where}.")
     _needed(table, ("what", "source"), f"{where}.")
     return {key: _text(value, f"{where}.{key}") for key, value in table.items()}

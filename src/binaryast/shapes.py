@@ -12,7 +12,7 @@ import numpy as np
 from astropy.units import Quantity
 
 from binaryast.errors import InputError
-from binaryast.units import Floats, checked, numbers, quantity, to_si
+from binaryast.units import Floats, as_quantity, checked, numbers, quantity, to_si
 from binaryast.values import Value
 
 
@@ -207,10 +207,11 @@ class PointCloud(Shape):
     weights: Any = None
 
     def __post_init__(self) -> None:
-        count = len(self.positions) if np.ndim(self.positions) else 0
+        given = as_quantity(self.positions, "m", "PointCloud: positions")
+        count = len(given) if given.ndim else 0
         if count == 0:
-            raise InputError(f"PointCloud: positions: expected an array of shape (k, 3), got {self.positions!r}")
-        positions = to_si(self.positions, "m", "PointCloud: positions", shape=(count, 3))
+            raise InputError(f"PointCloud: positions: expected an array of shape (k, 3), got shape {given.shape}")
+        positions = to_si(given, "m", "PointCloud: positions", shape=(count, 3))
         weights = np.ones(count) if self.weights is None else numbers(self.weights, "PointCloud: weights", (count,))
         checked(weights, "PointCloud: weights", (count,), "positive")
         fractions = weights / weights.sum()

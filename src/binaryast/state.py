@@ -12,7 +12,7 @@ from astropy.units import Quantity
 from binaryast import orbits
 from binaryast.errors import InputError
 from binaryast.system import System, rotation
-from binaryast.units import Floats, quantity, to_si
+from binaryast.units import Floats, as_quantity, brief, quantity, to_si
 from binaryast.values import Value
 
 ZERO = Quantity(0.0, u.deg)
@@ -72,7 +72,8 @@ class State(Value):
     si: StateFloats = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        count = len(self.position) if np.ndim(self.position) == 2 else 2
+        given = as_quantity(self.position, "m", "position")
+        count = len(given) if given.ndim == 2 and len(given) > 1 else 2
         position = to_si(self.position, "m", "position", shape=(count, 3))
         velocity = to_si(self.velocity, "m / s", "velocity", shape=(count, 3))
         attitude = rotation(self.attitude, "attitude", (count,))
@@ -139,6 +140,7 @@ class State(Value):
         >>> print(start.separation.round(1))
         1183.9 m
         """
+        _check_system(system)
         motion = orbits.circular_orbit(system, separation, period, pole, spins)
         return cls._from_motion(motion, epoch, frame, pole)
 
@@ -152,7 +154,7 @@ class State(Value):
         inclination: Quantity = ZERO,
         longitude_of_ascending_node: Quantity = ZERO,
         argument_of_periapsis: Quantity = ZERO,
-        true_anomaly: Quantity = ZERO,
+        true_anomaly: Quantity | None = None,
         mean_anomaly: Quantity | None = None,
         pole: Any = None,
         spins: Sequence[Any],
@@ -205,22 +207,23 @@ class State(Value):
             "inclination": inclination,
             "longitude_of_ascending_node": longitude_of_ascending_node,
             "argument_of_periapsis": argument_of_periapsis,
-            "true_anomaly": true_anomaly,
         }
-        motion = orbits.from_elements(system, semi_major_axis, eccentricity, angles, mean_anomaly, pole, spins)
+        _check_system(system)
+        motion = orbits.from_elements(
+            system, semi_major_axis, eccentricity, angles, true_anomaly, mean_anomaly, pole, spins
+        )
         return cls._from_motion(motion, epoch, frame, pole)
 
     @classmethod
     def _from_motion(cls, motion: orbits.Motion, epoch: Time | None, frame: str | None, pole: Any) -> "State":
         """Attach units, epoch and frame."""
-        celestial = pole is not None and len(pole) == 2
         return cls(
             position=quantity(motion.position, "m"),
             velocity=quantity(motion.velocity, "m / s"),
             attitude=motion.attitude,
             spin=quantity(motion.spin, "rad / s"),
             epoch=epoch,
-            frame=frame or ("ICRF" if celestial else "local"),
+            frame=("ICRF" if orbits.is_celestial(pole) else "local") if frame is None else frame,
         )
 
     @property
@@ -275,11 +278,11 @@ class RelativeState(Value):
     R2: Any = None
 
     def __post_init__(self) -> None:
-        leading = np.shape(self.X)[:-1]
+        leading = as_quantity(self.X, "m", "X").shape[:-1]
         units = {"X": "m", "V": "m / s", "Omega": "rad / s", "Omega2": "rad / s", "X2": "m", "V2": "m / s"}
         for name, unit in units.items():
             value = getattr(self, name)
-            if value is not None:
+            if value is not None or name in ("V", "Omega", "Omega2"):
                 self._set(**{name: quantity(to_si(value, unit, name, shape=(*leading, 3)), unit)})
         attitude = np.broadcast_to(np.eye(3), (*leading, 3, 3)) if self.R2 is None else self.R2
         self._set(R=rotation(self.R, "R", leading), R2=rotation(attitude, "R2", leading))
@@ -287,6 +290,8 @@ class RelativeState(Value):
     @classmethod
     def from_state(cls, state: State) -> "RelativeState":
         """Return (34)-(39) of a pair's state."""
+        if len(state.si.position) != 2:
+            raise InputError(f"relative: expected the state of a pair, got {len(state.si.position)} bodies")
         return cls.from_arrays(*state.si)
 
     @classmethod
@@ -332,7 +337,7 @@ class RelativeState(Value):
             raise InputError(f"to_state: expected one moment, got {self.X.shape[:-1]}: take one element first")
         X2, V2 = self.X2, self.V2
         if X2 is None or V2 is None:
-            if system is None:
+            if not isinstance(system, System):
                 raise InputError(
                     "to_state: X2 and V2 are not known: give system=, and the barycentre is at rest in the origin"
                 )
@@ -352,6 +357,15 @@ def _tdb(epoch: Any) -> Time | None:
     """Return an epoch in TDB."""
     if epoch is None:
         return None
-    if not isinstance(epoch, Time) or not epoch.isscalar:
-        raise InputError(f"epoch: expected one astropy.time.Time, got {epoch!r}")
-    return epoch.tdb
+    if not isinstance(epoch, Time) or not epoch.isscalar or np.any(epoch.mask):
+        raise InputError(f"epoch: expected one astropy.time.Time, got {brief(epoch)}")
+    try:
+        return epoch.tdb
+    except Exception as error:  # a local time, or a date outside of astropy's tables
+        raise InputError(f"epoch: {brief(epoch)} has no TDB: {brief(error)}") from None
+
+
+def _check_system(system: Any) -> None:
+    """Raise where a system is something else."""
+    if not isinstance(system, System):
+        raise InputError(f"system: expected a ba.System, got {brief(system)}")

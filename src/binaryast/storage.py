@@ -5,6 +5,7 @@ there is never half of one. ``format_version`` is raised when a reader of the pr
 """
 
 import contextlib
+import hashlib
 import io
 import os
 import tempfile
@@ -20,10 +21,12 @@ from astropy.units import Quantity
 
 from binaryast import bodies, gravity, integrators, shapes, system
 from binaryast.errors import BinaryastError, StorageError
+from binaryast.units import brief
 from binaryast.values import Value
 
 FORMAT = "binaryast trajectory"
 FORMAT_VERSION = 1
+SEAL_SIZE = 512  # bytes: the smallest block that HDF5 leaves free at the start of a file
 CLASSES: dict[str, type[Value]] = {
     kind.__name__: kind
     for module in (bodies, gravity, integrators, shapes, system)
@@ -41,6 +44,13 @@ class Content(NamedTuple):
     provenance: dict[str, str]
 
 
+def as_path(path: Any) -> Path:
+    """Return a path, from whatever a user gives for one."""
+    if not isinstance(path, (str, os.PathLike)) or "\0" in str(path):
+        raise StorageError(f"{path!r} is not the name of a file")
+    return Path(path)
+
+
 def refuse(path: Path, *, force: bool) -> None:
     """Raise, before any work is done, where a file could not be written under this name.
 
@@ -49,20 +59,21 @@ def refuse(path: Path, *, force: bool) -> None:
     StorageError
         Where it exists and ``force`` is not set, is a folder, or its folder is missing or cannot be written.
     """
-    if path.is_dir():
-        raise StorageError(f"{path} is a folder: give the name of a file")
-    if path.exists() and not force:
-        raise StorageError(
-            f"{path} exists already: choose another name, or allow it to be replaced (--force, force=True)"
-        )
-    folder = path.parent
-    if not folder.is_dir():
-        raise StorageError(f"{path}: there is no folder {folder}: make it first")
     try:
-        with tempfile.TemporaryFile(dir=folder):
+        if path.is_dir():
+            raise StorageError(f"{path} is a folder: give the name of a file")
+        if path.exists() and not force:
+            raise StorageError(
+                f"{path} exists already: choose another name, or allow it to be replaced (--force, force=True)"
+            )
+        if not path.parent.is_dir():
+            raise StorageError(f"{path}: there is no folder {path.parent}: make it first")
+        with tempfile.TemporaryFile(dir=path.parent):
             pass
+    except StorageError:
+        raise
     except OSError as error:
-        raise StorageError(f"{path}: nothing can be written in {folder.resolve()}: {_reason(error)}") from None
+        raise StorageError(f"{path}: nothing can be written in {path.parent.absolute()}: {_reason(error)}") from None
 
 
 def replace_whole(path: Path, data: bytes, *, force: bool) -> Path:
@@ -108,7 +119,7 @@ def write(path: Path, content: Content, *, force: bool = False) -> Path:
     """Write an HDF5 file, whole or not at all; see `replace_whole` for what it raises."""
     refuse(path, force=force)
     memory = io.BytesIO()
-    with h5py.File(memory, "w") as file:
+    with h5py.File(memory, "w", userblock_size=SEAL_SIZE) as file:
         file.attrs["format"] = FORMAT
         file.attrs["format_version"] = FORMAT_VERSION
         for name, data in content.datasets.items():
@@ -118,10 +129,26 @@ def write(path: Path, content: Content, *, force: bool = False) -> Path:
         for name, value in content.values.items():
             _put(file, name, value)
         _put(file, "provenance", content.provenance)
-    return replace_whole(path, memory.getvalue(), force=force)
+    body = memory.getvalue()[SEAL_SIZE:]
+    return replace_whole(path, _seal(body) + body, force=force)
 
 
-def read(path: Path) -> Content:
+def _seal(body: bytes) -> bytes:
+    """Return the block before the HDF5 part of a file: its hash, which tells damage that HDF5 itself would not see."""
+    return f"binaryast blake2b {hashlib.blake2b(body).hexdigest()}\n".encode().ljust(SEAL_SIZE, b"\0")
+
+
+def _verify(path: Path) -> None:
+    """Raise where a file is not what was written: damaged HDF5 can also make its library hang."""
+    with path.open("rb") as file:
+        seal, body = file.read(SEAL_SIZE), file.read()
+    if not seal.startswith(b"binaryast"):
+        raise broken(path, "it is not a file that binaryast wrote")
+    if seal != _seal(body):
+        raise broken(path, "it is damaged or was changed (read a file that you changed with verify=False)")
+
+
+def read(path: Path, *, verify: bool = True) -> Content:
     """Read an HDF5 file.
 
     Raises
@@ -130,25 +157,27 @@ def read(path: Path) -> Content:
         Where it is missing, broken, or not one of ours.
     """
     if not path.is_file():
-        raise StorageError(f"{path}: no such file")
+        raise StorageError(f"{path}: {'a folder, not a file' if path.is_dir() else 'no such file'}")
     try:
+        if verify:
+            _verify(path)
         with h5py.File(path, "r") as file:
             if file.attrs.get("format") != FORMAT:
                 raise StorageError(f"{path}: an HDF5 file, but not one that binaryast wrote")
-            if file.attrs["format_version"] > FORMAT_VERSION:
+            if not 1 <= file.attrs["format_version"] <= FORMAT_VERSION:
                 raise StorageError(
-                    f"{path}: format version {file.attrs['format_version']}, expected at most {FORMAT_VERSION}: "
+                    f"{path}: format version {file.attrs['format_version']}, expected 1 to {FORMAT_VERSION}: "
                     "a newer binaryast wrote it; install that one"
                 )
-            datasets = {name: item[()] for name, item in file.items() if isinstance(item, h5py.Dataset)}
+            datasets = {name: _in_si(item) for name, item in file.items() if isinstance(item, h5py.Dataset)}
             values = {name: _get(item) for name, item in file.items() if isinstance(item, h5py.Group)}
             attributes = dict(file.attrs)
     except StorageError:
         raise
     except BinaryastError as error:
         raise broken(path, str(error)) from None
-    except (OSError, RuntimeError, KeyError, TypeError, ValueError) as error:
-        raise broken(path, str(error).split("\n")[0]) from None
+    except Exception as error:  # a broken file makes the HDF5 library say anything
+        raise broken(path, brief(error)) from None
     return Content(datasets, attributes, values, values.pop("provenance", {}))
 
 
@@ -205,6 +234,12 @@ def _get(group: h5py.Group) -> Any:
     if kind not in CLASSES:
         raise KeyError(f"it holds a {kind}, which this version does not know")
     return CLASSES[kind](**items)
+
+
+def _in_si(dataset: h5py.Dataset) -> Any:
+    """Return a dataset in SI."""
+    value = _array(dataset)
+    return value.si.value if isinstance(value, Quantity) else value
 
 
 def _array(dataset: h5py.Dataset) -> Any:

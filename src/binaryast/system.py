@@ -10,7 +10,7 @@ from astropy.units import Quantity
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError
 from binaryast.gravity import Gravity, SecondDegree
-from binaryast.units import Floats, numbers, quantity, to_si
+from binaryast.units import Floats, brief, numbers, quantity, to_si
 from binaryast.values import Value
 
 ROTATION_TOLERANCE = 1e-9  # ||I - R^T R|| of an attitude that a user gives
@@ -71,18 +71,24 @@ class System(Value):
     gravity: Gravity = field(default_factory=SecondDegree)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.bodies, Sequence):
+            raise InputError(
+                f"System: bodies: expected a list of ba.RigidBody, primary first, got {brief(self.bodies)}"
+            )
         bodies = tuple(self.bodies)
         for body in bodies:
             if not isinstance(body, RigidBody):
-                raise InputError(f"System: bodies: expected ba.RigidBody, got {body!r}")
+                raise InputError(f"System: bodies: expected ba.RigidBody, got {brief(body)}")
         if len(bodies) != 2:
             raise InputError(f"System: bodies: this version takes a pair, primary first; got {len(bodies)}")
         if bodies[0].name == bodies[1].name:
             raise InputError(f"System: two bodies are called {bodies[0].name!r}: give each its own name")
         if not isinstance(self.gravity, Gravity):
-            raise InputError(f"System: gravity: expected a model such as ba.SecondDegree(), got {self.gravity!r}")
+            raise InputError(f"System: gravity: expected a model such as ba.SecondDegree(), got {brief(self.gravity)}")
         self._set(bodies=bodies)
         parameters = self.gravity.parameters(bodies[1], bodies[0])
+        if not np.all(np.isfinite(parameters)):
+            raise InputError("System: the masses are beyond what can be computed with")
         object.__setattr__(self, "parameters", parameters)  # writable: compiled functions take no read-only array
 
     parameters: Floats = field(init=False, repr=False)
@@ -132,6 +138,10 @@ class System(Value):
             raise InputError("position: the mass centres coincide: expected a position that is not zero")
         r = np.eye(3) if attitude is None else rotation(attitude, "attitude", ())
         u, *rest = self.gravity.potential(self.parameters, *x, *r.ravel())
+        if not np.all(np.isfinite([u, *rest])):
+            raise InputError(
+                f"position: the gravity at {brief(x)} m is not a number: too near, too far, or a wrong potential"
+            )
         gradient, moment = np.array(rest[:3]), np.array(rest[3:])
         return MutualGravity(
             energy=quantity(u, "J"),

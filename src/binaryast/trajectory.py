@@ -16,7 +16,7 @@ from binaryast.errors import CheckError, InputError
 from binaryast.integrators import Integrator
 from binaryast.state import RelativeState, State
 from binaryast.system import System
-from binaryast.units import Floats, quantity
+from binaryast.units import Floats, brief, checked, quantity
 from binaryast.values import Value
 
 if TYPE_CHECKING:
@@ -114,18 +114,24 @@ class Trajectory(Value):
         return len(self.si.time)
 
     def __getitem__(self, index: Any) -> Any:
-        if isinstance(index, slice):
-            return replace(self, si=TrajectoryFloats(*(array[index] for array in self.si)))
         try:
+            if isinstance(index, slice):
+                return self._rows(index)
             index = operator.index(index)
-        except TypeError:
-            raise InputError(f"run[{index!r}]: expected a whole number or a slice") from None
+        except (TypeError, ValueError):
+            raise InputError(f"run[{index!r}]: expected a whole number or a slice of them") from None
         if not -len(self) <= index < len(self):
             raise IndexError(f"run[{index}]: there are {len(self)} rows")
         epoch = None if self.epoch is None else self.epoch + TimeDelta(self.time[index])
         return State(
             self.position[index], self.velocity[index], self.attitude[index], self.spin[index], epoch, self.frame
         )
+
+    def _rows(self, index: slice) -> "Trajectory":
+        """Return some of the rows; the figures remain those of the whole run."""
+        if not len(self.si.time[index]):
+            raise IndexError(f"run[{index.start}:{index.stop}] has no rows: there are {len(self)}")
+        return replace(self, si=TrajectoryFloats(*(array[index] for array in self.si)))
 
     @property
     def time(self) -> Quantity:
@@ -239,7 +245,11 @@ class Trajectory(Value):
             ("max_rotation_error", rotation),
         ):
             figure = getattr(self, name)
-            if bound is not None and not figure <= bound:
+            if bound is None:
+                continue
+            if not isinstance(bound, (int, float)) or not bound >= 0:
+                raise InputError(f"check: expected numbers of zero or more, got {bound!r}")
+            if figure > bound:
                 raise CheckError(f"{name} is {figure:.4g}, expected at most {bound:g}: try a smaller step")
         return self
 
@@ -272,7 +282,7 @@ class Trajectory(Value):
         >>> run = ba.propagate(system, state, duration=1 * u.h, integrator=ba.LGVI(40 * u.s), save_every=10 * u.min)
         >>> table = run.to_table()
         >>> len(table), table.colnames[:3]
-        (7, ['time', 'Didymos_x', 'Didymos_y'])
+        (7, ['time', 'Didymos.x', 'Didymos.y'])
         """
         from astropy.table import QTable  # a quarter of a second, needed only here
 
@@ -280,13 +290,13 @@ class Trajectory(Value):
         for i, name in enumerate(self.system.names):
             quaternion = Rotation.from_matrix(self.si.attitude[:, i]).as_quat()
             for j, axis in enumerate("xyz"):
-                columns[f"{name}_{axis}"] = self.position[:, i, j]
-                columns[f"{name}_v{axis}"] = self.velocity[:, i, j]
-                columns[f"{name}_spin_{axis}"] = self.spin[:, i, j]
+                columns[f"{name}.{axis}"] = self.position[:, i, j]
+                columns[f"{name}.v{axis}"] = self.velocity[:, i, j]
+                columns[f"{name}.spin_{axis}"] = self.spin[:, i, j]
             for j, axis in enumerate("xyzw"):
-                columns[f"{name}_q{axis}"] = quaternion[:, j]
+                columns[f"{name}.q{axis}"] = quaternion[:, j]
         order = ["time"] + [
-            f"{name}_{part}"
+            f"{name}.{part}"
             for name in self.system.names
             for part in ("x", "y", "z", "vx", "vy", "vz", "qx", "qy", "qz", "qw", "spin_x", "spin_y", "spin_z")
         ]
@@ -340,24 +350,38 @@ class Trajectory(Value):
         for name in FIGURES:
             attributes[name] = getattr(getattr(self, name), "value", getattr(self, name))
         values = {"system": self.system, "integrator": self.integrator, "epoch": self.epoch}
-        return storage.write(Path(path), storage.Content(datasets, attributes, values, self.provenance), force=force)
+        return storage.write(
+            storage.as_path(path), storage.Content(datasets, attributes, values, self.provenance), force=force
+        )
 
     @classmethod
-    def read(cls, path: str | Path) -> "Trajectory":
+    def read(cls, path: str | Path, *, verify: bool = True) -> "Trajectory":
         """Read a run from an HDF5 file.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+        verify : bool
+            Whether to refuse a file that is not, byte for byte, what was written.
+
+        Returns
+        -------
+        Trajectory
 
         Raises
         ------
         StorageError
             Where the file is missing, broken, or not one of ours.
         """
-        content = storage.read(Path(path))
+        path = storage.as_path(path)
+        content = storage.read(path, verify=verify)
         attributes = content.attributes
         try:
             return cls(
                 system=content.values["system"],
                 integrator=content.values["integrator"],
-                si=TrajectoryFloats(*(np.asarray(content.datasets[name]) for name in TrajectoryFloats._fields)),
+                si=_floats(content.datasets),
                 epoch=content.values.get("epoch"),
                 frame=str(attributes["frame"]),
                 status=str(attributes["status"]),
@@ -372,7 +396,24 @@ class Trajectory(Value):
                 },
             )
         except KeyError as error:
-            raise storage.broken(Path(path), f"{error.args[0]} is missing") from None
+            raise storage.broken(path, f"{error.args[0]} is missing") from None
+        except Exception as error:  # a file that was changed can hold anything
+            raise storage.broken(path, brief(error)) from None
+
+
+def _floats(datasets: dict[str, Any]) -> TrajectoryFloats:
+    """Return the arrays of a file, after a look at their shapes and values."""
+    rows = len(datasets["time"])
+    shapes = {
+        "time": (rows,),
+        "position": (rows, 2, 3),
+        "velocity": (rows, 2, 3),
+        "attitude": (rows, 2, 3, 3),
+        "spin": (rows, 2, 3),
+        "potential_energy": (rows,),
+    }
+    arrays = {name: np.asarray(datasets[name], dtype=np.float64) for name in shapes}
+    return TrajectoryFloats(*(checked(arrays[name], name, shape) for name, shape in shapes.items()))
 
 
 def _span(seconds: float) -> str:

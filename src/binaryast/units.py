@@ -1,7 +1,6 @@
 """The one place where quantities become plain SI floats, and texts become quantities."""
 
 import json
-from collections.abc import Sequence
 from typing import Any, Literal, TypeAlias
 
 import astropy.units as u
@@ -13,6 +12,7 @@ from binaryast.errors import InputError, UnitError
 
 Floats: TypeAlias = NDArray[np.floating[Any]]
 Sign = Literal["any", "positive", "non-negative"]
+LARGEST = 1e90  # in SI: three factors of it still are a number
 
 KINDS = {  # what a unit is called in a message, and one that users write
     "m": ("a length", "m"),
@@ -64,32 +64,51 @@ def to_si(value: Any, unit: str, name: str, shape: tuple[int, ...] = (), sign: S
     1500.0
     """
     kind, example = KINDS[unit]
-    if isinstance(value, str):
-        value = parse(value, unit, name)
-    if not isinstance(value, Quantity):
-        value = _from_list(value, name, kind, example)
-    if np.iscomplexobj(value.value):
-        raise InputError(f"{name}: expected a real value, got {value}")
+    value = as_quantity(value, unit, name)
     try:
         floats = np.array(value.to_value(u.Unit(unit)), dtype=np.float64)
     except u.UnitConversionError:
-        found = value.unit or "no unit"
-        raise UnitError(f"{name}: {value} is not {kind}: expected a unit such as {example}, got {found}") from None
-    except (TypeError, ValueError) as error:
-        raise InputError(f"{name}: {value!r} is not a real number ({error})") from None
-    return checked(floats, name, shape, sign, value)
+        found = "no unit" if value.unit == u.dimensionless_unscaled else str(value.unit)
+        raise UnitError(
+            f"{name}: {brief(value)} is not {kind}: expected a unit such as {example}, got {found}"
+        ) from None
+    except Exception as error:  # whatever an array of objects raises
+        raise InputError(f"{name}: {brief(value)} is not a real number ({brief(error)})") from None
+    return checked(floats, name, shape, sign)
 
 
-def _from_list(value: Any, name: str, kind: str, example: str) -> Quantity:
-    """Join a list of quantities, or say how a bare number is written."""
-    if isinstance(value, Sequence) and len(value) and all(isinstance(item, Quantity) for item in value):
+def as_quantity(value: Any, unit: str, name: str) -> Quantity:
+    """Return a real quantity of any shape and unit; a list of quantities is joined, a bare number is an error."""
+    kind, example = KINDS[unit]
+    if isinstance(value, (list, tuple)) and _holds_quantities(value):
         try:
-            return Quantity(value)
+            value = Quantity(value)
         except u.UnitConversionError:
-            raise UnitError(f"{name}: the elements have units of different kinds; expected {kind} in each") from None
-    shown = repr(value) if len(repr(value)) < 40 else "..."
-    short = name.rsplit(": ")[-1]
-    raise UnitError(f"{name}={shown} has no unit: expected {kind}, write {short}={shown} * u.{u_expression(example)}")
+            raise UnitError(f"{name}: its elements have units of different kinds; expected {kind} in each") from None
+        except (TypeError, ValueError):
+            raise InputError(f"{name}: its elements have different shapes: {brief(value)}") from None
+    if not isinstance(value, Quantity):
+        short = name.rsplit(": ")[-1]
+        unit_text = u_expression(example)
+        if isinstance(value, (int, float, list, tuple, np.ndarray, np.number)) and len(repr(value)) < 40:
+            raise UnitError(f"{name}={value!r} has no unit: expected {kind}, write {short}={value!r} * u.{unit_text}")
+        raise UnitError(f"{name}: expected {kind} such as 1 * u.{unit_text}, got {brief(value)}")
+    if value.dtype.kind not in "iuf":
+        raise InputError(f"{name}: expected real numbers, got {brief(value)}")
+    return value
+
+
+def _holds_quantities(value: Any) -> bool:
+    """Whether the innermost elements of nested lists are quantities."""
+    while isinstance(value, (list, tuple)) and len(value):
+        value = value[0]
+    return isinstance(value, Quantity)
+
+
+def brief(value: Any) -> str:
+    """Return a value on one short line."""
+    text = " ".join(str(value).split())
+    return text if len(text) <= 80 else text[:77] + "..."
 
 
 def u_expression(unit: str) -> str:
@@ -103,52 +122,64 @@ def u_expression(unit: str) -> str:
     }.get(unit, unit)
 
 
-def checked(floats: Floats, name: str, shape: tuple[int, ...], sign: Sign = "any", shown: Any = None) -> Floats:
-    """Return an array that has been looked at: shape, finite, sign; read-only."""
-    shown = floats if shown is None else shown
+def checked(floats: Floats, name: str, shape: tuple[int, ...], sign: Sign = "any") -> Floats:
+    """Return an array that has been looked at: shape, finite, sign, size; read-only."""
     if floats.shape != shape:
         expected = "a single value" if shape == () else f"an array of shape {shape}"
         raise InputError(f"{name}: expected {expected}, got shape {floats.shape}")
     if not np.all(np.isfinite(floats)):
-        raise InputError(f"{name}: expected finite values, got {shown}")
+        raise InputError(f"{name}: expected finite values, got {brief(floats)}")
     if sign == "positive" and not np.all(floats > 0):
-        raise InputError(f"{name}: expected a positive value, got {shown}")
+        raise InputError(f"{name}: expected a positive value, got {brief(floats)}")
     if sign == "non-negative" and not np.all(floats >= 0):
-        raise InputError(f"{name}: expected a value of zero or more, got {shown}")
+        raise InputError(f"{name}: expected a value of zero or more, got {brief(floats)}")
+    if np.any(np.abs(floats) > LARGEST) or (sign == "positive" and np.any(floats < 1 / LARGEST)):
+        raise InputError(
+            f"{name}: {brief(floats)} in SI is beyond what can be computed with: {1 / LARGEST:g} to {LARGEST:g}"
+        )
     floats.flags.writeable = False
     return floats
 
 
 def numbers(value: Any, name: str, shape: tuple[int, ...]) -> Floats:
     """Return dimensionless values as a read-only array of floats of that shape."""
+    if isinstance(value, Quantity):
+        if value.unit != u.dimensionless_unscaled:
+            raise UnitError(f"{name}: expected numbers without a unit, got {brief(value)}")
+        value = value.value
     try:
-        array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError(f"{name}: expected an array of numbers of shape {shape}, got {value!r}") from None
+        array = np.asarray(value)
+        if array.dtype.kind not in "iuf":
+            raise TypeError
+        array = array.astype(np.float64)
+    except (TypeError, ValueError, RecursionError):
+        expected = "a number" if shape == () else f"an array of numbers of shape {shape}"
+        raise InputError(f"{name}: expected {expected}, got {brief(value)}") from None
     return checked(array, name, shape)
 
 
-def parse(text: str, unit: str, name: str) -> Quantity:
+def parse(text: str, name: str, example: str = "1 m") -> Quantity:
     """Return the quantity that a text such as ``"40 s"`` or ``"[1, 0, 0.3] m"`` says.
 
     Examples
     --------
     >>> from binaryast.units import parse
-    >>> parse("60d", "s", "duration").unit
+    >>> parse("60d", "duration").unit
     Unit("d")
     """
-    kind, example = KINDS[unit]
     try:
         if text.lstrip().startswith("["):
             values, _, tail = text.rpartition("]")
-            quantity = Quantity(np.array(json.loads(values + "]"), dtype=float), tail.strip())
+            result = Quantity(np.array(json.loads(values + "]"), dtype=float), tail.strip())
         else:
-            quantity = Quantity(text)
-    except (TypeError, ValueError):
-        raise UnitError(f"{name}: {text!r} is not {kind}: write a number and a unit, such as '1 {example}'") from None
-    if quantity.unit == u.dimensionless_unscaled:
-        raise UnitError(f"{name}: {text!r} has no unit: expected {kind}, such as '{text.strip()} {example}'")
-    return quantity
+            result = Quantity(text)
+    except (TypeError, ValueError, RecursionError):
+        raise UnitError(
+            f"{name}: {brief(text)!r} is not understood: write a number and a unit, such as '{example}'"
+        ) from None
+    if result.unit == u.dimensionless_unscaled:
+        raise UnitError(f"{name}: {brief(text)!r} has no unit: write a number and a unit, such as '{example}'")
+    return result
 
 
 def quantity(floats: Any, unit: str) -> Quantity:

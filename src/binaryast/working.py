@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from binaryast.kernels import layout
-from binaryast.kernels.contact import HEADER
+from binaryast.kernels.contact import HEADER, SPACING
 from binaryast.kernels.lgvi import prepare
 from binaryast.state import State
 from binaryast.system import System
@@ -52,10 +52,11 @@ def surfaces(system: System) -> Floats:
     two, one = system.primary.surface, system.secondary.surface
     reach = system.primary.bounding_radius + system.secondary.bounding_radius if one and two else 0.0
     pieces = [np.concatenate([centre, matrix[np.triu_indices(3)]]) for centre, matrix in two + one]
-    header = np.array([reach, len(two), len(one)])
-    if len(header) != HEADER:
-        raise AssertionError("the contact kernel expects another header")
-    return np.concatenate([header, *pieces])
+    smallest = min((np.sqrt(np.linalg.eigvalsh(matrix)[0]) for _, matrix in two + one), default=1.0)
+    surfaces = np.zeros(HEADER)
+    surfaces[:3] = reach, len(two), len(one)
+    surfaces[SPACING] = smallest / 2
+    return np.concatenate([surfaces, *pieces])
 
 
 def barycentre(system: System, state: State) -> Barycentre:

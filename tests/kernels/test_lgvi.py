@@ -24,7 +24,7 @@ def steps(system: ba.System, state: np.ndarray, h: float, count: int) -> np.ndar
         system.gravity.potential,
         system.parameters,
         constants,
-        np.zeros(3),
+        np.array([0.0, 0.0, 0.0, 1.0]),
         state,
         watch,
         h,

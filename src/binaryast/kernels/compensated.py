@@ -1,4 +1,4 @@
-"""Sums that carry what rounding takes from them: over 10^7 steps they keep two to three digits more."""
+"""Sums that carry what rounding takes from them: over 10^7 steps they keep about two digits more."""
 
 from binaryast.kernels.jit import Quaternion, Vector, jit
 

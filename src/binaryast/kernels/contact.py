@@ -11,9 +11,12 @@ from binaryast.kernels.jit import TOUCH, Array, Matrix, Vector, jit
 from binaryast.kernels.layout import ATTITUDE_1, ATTITUDE_2, POSITION, matrix_at, vector_at
 from binaryast.kernels.so3 import dot, relative_attitude, rotate, rotate_back
 
-# surfaces: the distance within which to look, the number of pieces of the primary and of the secondary, then for each
-# piece its centre and the six elements xx, xy, xz, yy, yz, zz of its matrix, in the body's frame.
-HEADER = 3
+# surfaces: the distance within which to look, the number of pieces of the primary and of the secondary, how far apart
+# the places of a step lie that are looked at, then for each piece its centre and the six elements xx, xy, xz, yy, yz,
+# zz of its matrix, in the body's frame.
+SPACING = 3
+HEADER = 4
+MOST_PLACES = 1000
 PIECE = 9
 GOLDEN = 0.6180339887498949
 LOOKS = 40  # the golden section is then 4e-9 wide
@@ -74,12 +77,9 @@ def overlap(d: Vector, a: Symmetric, b: Symmetric) -> bool:
     return True
 
 
-@jit(TOUCH)
-def pair_touches(state: Array, surfaces: Array) -> bool:
-    """Whether any piece of the secondary overlaps any piece of the primary."""
-    r2 = matrix_at(state, ATTITUDE_2)
-    r = relative_attitude(r2, matrix_at(state, ATTITUDE_1))
-    x = rotate_back(r2, vector_at(state, POSITION))
+@jit()
+def placed_touches(x: Vector, r: Matrix, surfaces: Array) -> bool:
+    """Whether any piece of the secondary overlaps any piece of the primary, at X and R."""
     first_secondary = HEADER + PIECE * int(surfaces[1])
     for i in range(int(surfaces[2])):
         at = first_secondary + PIECE * i
@@ -94,4 +94,22 @@ def pair_touches(state: Array, surfaces: Array) -> bool:
             )
             if overlap(d, (*vector_at(surfaces, k + 3), *vector_at(surfaces, k + 6)), b):
                 return True
+    return False
+
+
+@jit(TOUCH)
+def pair_touches(state: Array, surfaces: Array, x: float, y: float, z: float) -> bool:
+    """Whether the pair touches on the straight way from the position (x, y, z) before a step to that of the state.
+
+    The way is looked at in places no further apart than half the smallest semi-axis, with the attitudes of its end.
+    """
+    r2 = matrix_at(state, ATTITUDE_2)
+    r = relative_attitude(r2, matrix_at(state, ATTITUDE_1))
+    after = vector_at(state, POSITION)
+    way = (after[0] - x, after[1] - y, after[2] - z)
+    places = min(MOST_PLACES, 1 + int(sqrt(dot(way, way)) / surfaces[SPACING]))
+    for place in range(1, places + 1):
+        s = place / places
+        if placed_touches(rotate_back(r2, (x + s * way[0], y + s * way[1], z + s * way[2])), r, surfaces):
+            return True
     return False

@@ -2,7 +2,9 @@
 
 `solve` is the paper's: exponential coordinates, any inertia matrix. `solve_cayley` is the same equation in the body's
 principal axes and Cayley coordinates, where it is a polynomial; the production steps use it. About a principal axis
-both say sin(theta) = h Omega, theta being the turn in one step: there is no solution for h Omega >= 1.
+both say sin(theta) = h Omega, theta being the turn in one step: there is no solution for h Omega >= 1. About other
+axes the branch of small turns ends between 1 and 1.19; both refuse g from h Omega = |J^-1 g| = 1 on for every axis, for
+beyond it another branch may lie nearer.
 """
 
 from math import asin, sqrt
@@ -44,12 +46,15 @@ def solve(inertia: Array, g: Array) -> tuple[Array, int]:
 
     Returns f and the number of iterations, -1 where there is no solution on the branch of small turns.
     """
+    if not abs(g[0]) + abs(g[1]) + abs(g[2]) < 1e150:
+        return np.zeros(3), -1
     f: Array = np.linalg.solve(inertia, g)
     sine = sqrt(f @ f)
     if sine == 0.0:
         return f, 0
-    if sine < 1.0:
-        f = f * (asin(sine) / sine)  # exact for a spin about a principal axis
+    if not sine < 1.0:
+        return f, -1
+    f = f * (asin(min(sine, 0.95)) / sine)  # exact for a spin about a principal axis, held back near the fold
     for iteration in range(1, MOST_ITERATIONS + 1):
         matrix = gradient(inertia, f)
         correction: Array = np.linalg.solve(matrix, g - residual_function(inertia, f))
@@ -79,7 +84,10 @@ def solve_cayley(inverse_moments: Vector, ratios: Vector, g: Vector) -> tuple[Ve
     square = a1 * a1 + a2 * a2 + a3 * a3
     if square == 0.0:
         return (0.0, 0.0, 0.0), 0
-    scale = 2.0 / (1.0 + sqrt(max(0.0, 1.0 - 4.0 * square)))  # exact for a spin about a principal axis
+    if not 4.0 * square < 1.0:  # h Omega >= 1, or not a number
+        return (0.0, 0.0, 0.0), -1
+    # exact for a spin about a principal axis; held back near the fold, where it would lead to the other branch
+    scale = 2.0 / (1.0 + sqrt(max(0.1, 1.0 - 4.0 * square)))
     c1, c2, c3 = scale * a1, scale * a2, scale * a3
     n = 1.0 + scale * scale * square
     c1 = n * a1 + b1 * c2 * c3  # one pass of Gauss and Seidel

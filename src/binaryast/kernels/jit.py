@@ -40,8 +40,8 @@ ROWS = types.Array(types.float64, 2, "C")
 PAIR_POTENTIAL = types.UniTuple(types.float64, 7)(ARRAY, *[types.float64] * 12)
 # What is watched at every step: energy, angular momentum (3), rotation error, separation from (state, constants).
 MEASURE = types.UniTuple(types.float64, 6)(ARRAY, ARRAY)
-# Whether surfaces touch, from (state, surfaces).
-TOUCH = types.boolean(ARRAY, ARRAY)
+# Whether surfaces touch, from (state, surfaces, position before the step).
+TOUCH = types.boolean(ARRAY, ARRAY, *[types.float64] * 3)
 # One step of h: status from (state, constants, potential, parameters, h).
 STEP = types.int64(ARRAY, ARRAY, types.FunctionType(PAIR_POTENTIAL), ARRAY, types.float64)
 # Completes a working state: (state, potential, parameters).
@@ -138,29 +138,6 @@ def jit(signature: Any = None, *, allocates: bool = False, **options: Any) -> Ca
     return decorate
 
 
-def pair_potential(function: Function) -> Function:
-    """Compile a user's mutual potential of a pair, for `binaryast.PairPotential`.
-
-    Parameters
-    ----------
-    function : callable
-        ``function(p, x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33)``: parameters ``p`` (float array), the
-        secondary's centre X [m] and attitude R (row by row) in the primary's frame. It returns seven floats: U [J],
-        dU/dX [N] and the moment M [N m] of equation (54) of Lee, Leok and McClamroch (2007), which is minus the torque
-        on the secondary, in the primary's frame.
-
-    Returns
-    -------
-    callable
-        The compiled function. It can still be called from Python.
-
-    Examples
-    --------
-    >>> import binaryast as ba
-    >>> @ba.pair_potential
-    ... def kepler(p, x, y, z, r11, r12, r13, r21, r22, r23, r31, r32, r33):
-    ...     r = (x * x + y * y + z * z) ** 0.5
-    ...     w = p[0] / r**3
-    ...     return -p[0] / r, w * x, w * y, w * z, 0.0, 0.0, 0.0
-    """
+def compile_pair_potential(function: Function) -> Function:
+    """Compile a user's mutual potential with the signature of ours; it is not kept on disk."""
     return numba.njit(PAIR_POTENTIAL, **OPTIONS)(function)  # type: ignore[no-any-return]

@@ -32,7 +32,7 @@ from binaryast.kernels.layout import (
     vector_at,
 )
 from binaryast.kernels.so3 import cayley, cross, quaternion_to_matrix, relative_attitude, rotate, rotate_back
-from binaryast.kernels.status import COMPLETED, NO_ROTATION_1, NO_ROTATION_2
+from binaryast.kernels.status import COMPLETED, NO_ROTATION_1, NO_ROTATION_2, NOT_FINITE
 
 
 @jit()
@@ -70,6 +70,13 @@ def attract(
     xg = cross(x, (g1, g2, g3))
     n1, n2, n3 = rotate_back(r, (m1, m2, m3))
     return u, rotate(r2, (g1, g2, g3)), (xg[0] + m1, xg[1] + m2, xg[2] + m3), (-n1, -n2, -n3)
+
+
+@jit()
+def is_finite(u: float, x: Vector, v: Vector, p1: Vector, p2: Vector) -> bool:
+    """Whether all of these are numbers, by one comparison: what is infinite or not a number spoils a sum."""
+    total = (u - u) + (x[0] + x[1] + x[2]) + (v[0] + v[1] + v[2]) + (p1[0] + p1[1] + p1[2]) + (p2[0] + p2[1] + p2[2])
+    return abs(total) < 1e300
 
 
 @jit()
@@ -116,6 +123,8 @@ def pair_step(state: Array, constants: Array, potential: PairPotential, paramete
     v, rv = add_vector(v, rv, to_velocity, gradient)  # (119)
     p1, rp1 = add_vector(p1, rp1, half, torque_1)  # (120)
     p2, rp2 = add_vector(p2, rp2, half, torque_2)  # (121)
+    if not is_finite(u, x, v, p1, p2):
+        return NOT_FINITE
 
     put_vector(state, POSITION, x)
     put_vector(state, VELOCITY, v)
