@@ -258,8 +258,11 @@ def test_ctrl_c_keeps_what_was_computed(folder: Path) -> None:
         cwd=folder,
     )
     assert process.stderr is not None
-    while "simulated" not in process.stderr.read(20):  # the bar appears after a second of running
-        pass
+    shown = ""
+    while "simulated" not in shown:  # the bar appears after a second of running
+        piece = process.stderr.read(20)
+        assert piece, f"it ended too early: {shown}"
+        shown += piece
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=60)
     assert process.returncode == cli.INTERRUPTED

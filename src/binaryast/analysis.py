@@ -93,7 +93,7 @@ def mutual_period(run: Trajectory) -> Quantity:
         raise InputError(f"mutual_period: the run covers {turns:.3g} turns: expected at least one")
     if np.abs(np.diff(angle)).max() > np.pi / 2:
         raise InputError("mutual_period: fewer than four rows a turn: save more often")
-    slope = np.polynomial.Polynomial.fit(run.si.time, angle, 1).convert().coef[1]
+    slope = float(np.polyfit(run.si.time, angle, 1)[0])
     return quantity(2 * np.pi / slope, "s").to("h")
 
 

@@ -288,7 +288,7 @@ class Trajectory(Value):
 
         columns: dict[str, Any] = {"time": self.time}
         for i, name in enumerate(self.system.names):
-            quaternion = Rotation.from_matrix(self.si.attitude[:, i]).as_quat()
+            quaternion = Rotation.from_matrix(self.si.attitude[:, i].copy()).as_quat()
             for j, axis in enumerate("xyz"):
                 columns[f"{name}.{axis}"] = self.position[:, i, j]
                 columns[f"{name}.v{axis}"] = self.velocity[:, i, j]

@@ -71,7 +71,7 @@ def to_working(system: System, state: State) -> Floats:
     position, velocity, attitude, spin = state.si
     working[layout.POSITION : layout.POSITION + 3] = position[1] - position[0]
     working[layout.VELOCITY : layout.VELOCITY + 3] = velocity[1] - velocity[0]
-    quaternions = Rotation.from_matrix(attitude).as_quat()
+    quaternions = Rotation.from_matrix(attitude.copy()).as_quat()  # SciPy below 1.15 takes no read-only array
     for i, at_attitude, at_momentum in (
         (0, layout.ATTITUDE_2, layout.MOMENTUM_2),
         (1, layout.ATTITUDE_1, layout.MOMENTUM_1),

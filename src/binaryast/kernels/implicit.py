@@ -24,7 +24,8 @@ def residual_function(inertia: Array, f: Array) -> Array:
     """Return G(f), below (129)."""
     first, second, _, _ = rodrigues_coefficients(sqrt(f @ f))
     momentum = inertia @ f
-    return first * momentum + second * np.cross(f, momentum)
+    result: Array = first * momentum + second * np.cross(f, momentum)
+    return result
 
 
 @jit(allocates=True)

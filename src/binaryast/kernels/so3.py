@@ -55,7 +55,8 @@ def exp(f: Array) -> Array:
     """Return exp S(f) by Rodrigues' formula (129)."""
     first, second, _, _ = rodrigues_coefficients(sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2]))
     skew = hat(f)
-    return np.eye(3) + first * skew + second * (skew @ skew)
+    result: Array = np.eye(3) + first * skew + second * (skew @ skew)
+    return result
 
 
 @jit()
