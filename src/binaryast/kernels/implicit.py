@@ -33,12 +33,13 @@ def gradient(inertia: Array, f: Array) -> Array:
     """Return the gradient of G at f, below (130)."""
     first, second, third, fourth = rodrigues_coefficients(sqrt(f @ f))
     momentum = inertia @ f
-    return (
+    result: Array = (
         third * np.outer(momentum, f)
         + first * inertia
         + fourth * np.outer(np.cross(f, momentum), f)
         + second * (hat(f) @ inertia - hat(momentum))
     )
+    return result
 
 
 @jit(allocates=True)
