@@ -6,7 +6,7 @@ import pytest
 
 import binaryast as ba
 from binaryast.errors import ContactError, EndWarning, InputError, StepError, StepWarning
-from binaryast.propagation import schedule
+from binaryast.schedule import schedule
 
 
 @pytest.mark.parametrize(
@@ -189,7 +189,7 @@ def test_gravity_that_goes_wrong_ends_a_run_and_no_nan_leaves(didymos: ba.System
         assert np.all(np.isfinite(array))
     assert np.isfinite(run.max_relative_linear_momentum_error)
     broken = ba.System(didymos.bodies, gravity=ba.PairPotential(one_sided, [gm, 1300.0, kind]))
-    with pytest.raises((InputError, ValueError), match=r"not a number|too near"):
+    with pytest.raises(InputError, match=r"not a number|too near"):
         ba.propagate(broken, state, duration=1 * u.day, integrator=ba.LGVI(40 * u.s))
 
 

@@ -46,13 +46,12 @@ def circular_orbit(
 def _square_rate(system: System, r: float, synchronous: Sequence[bool]) -> float:
     """Return n^2 = (dU/dr)/(m r), with the mean over the turn of a body that does not keep its face to the other."""
     turns = [np.zeros(1) if locked else np.arange(PHASES) * (2 * pi / PHASES) for locked in synchronous]
-    potential, parameters = system.gravity.potential, system.parameters
     total = 0.0
     for primary in turns[0]:
         n = np.array([cos(primary), -sin(primary), 0.0])  # the line of centres in the primary's frame
         for secondary in turns[1]:
             attitude = Rotation.from_euler("z", secondary - primary).as_matrix()
-            total += float(np.dot(potential(parameters, *(r * n), *attitude.ravel())[1:4], n))
+            total += float(np.dot(system.attraction(r * n, attitude)[1:4], n))
     square = total / (len(turns[0]) * len(turns[1])) / (system.reduced_mass * r)
     if not square > 0:
         raise InputError(

@@ -1,18 +1,13 @@
 """The driver of a run: it checks, cuts the time into equal steps, calls the compiled loop in chunks, and reports."""
 
 import platform
-import signal
-import threading
 import time
 import warnings
-from collections.abc import Iterator
-from contextlib import contextmanager
 from datetime import UTC, datetime
 from importlib.metadata import version
-from math import ceil, floor, pi
-from typing import Any, NamedTuple
+from math import pi
+from typing import Any
 
-import astropy.units as u
 import numpy as np
 from astropy.units import Quantity
 
@@ -23,26 +18,16 @@ from binaryast.kernels import layout, loop, status
 from binaryast.kernels.contact import pair_touches
 from binaryast.kernels.jit import source_hash
 from binaryast.kernels.measure import pair_measure
+from binaryast.progress import bar, keyboard
+from binaryast.schedule import SLACK, Segment, schedule
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.trajectory import Trajectory, TrajectoryFloats
 from binaryast.units import Floats, brief, quantity, to_si
 
-MOST_ROWS_BY_DEFAULT = 2000
-MOST_ROWS = 10_000_000
-MOST_STEPS = 10**15  # beyond it, times would lose digits
-SLACK = 1e-9  # relative: a duration of 8640.000000001 saving intervals has 8640 of them
 DOUBTFUL_ENERGY_ERROR = 0.01
 DOUBTFUL_TURN = 2 * pi / 20  # rad in one step
 CHUNK_SECONDS = 0.1  # between two looks at the keyboard
-
-
-class Segment(NamedTuple):
-    """Equal steps: their size [s], how many, and after how many a row is saved."""
-
-    step: float
-    steps: int
-    stride: int
 
 
 def propagate(
@@ -108,46 +93,9 @@ def propagate(
     segments = schedule(end, integrator.step.value, interval)
     _check_turns(system, state, integrator, max(segment.step for segment in segments))
     run = _Run(system, state, integrator, segments)
-    with _bar(end, progress) as show:
+    with bar(end, progress) as show:
         run.go(show)
     return run.trajectory()
-
-
-def schedule(end: float, step: float, interval: float | None) -> list[Segment]:
-    """Return the segments of a run: whole saving intervals, then what remains, each in equal steps up to ``step``."""
-    if step > end * (1 + SLACK):
-        raise StepError(
-            f"step: {step:g} s is longer than the run of {end:g} s: give a smaller step or a longer duration"
-        )
-    if end / step > MOST_STEPS:
-        raise StepError(f"step: {step:g} s makes {end / step:.3g} steps of the run of {end:g} s, expected at most 1e15")
-    if interval is None:
-        count = ceil(end / step * (1 - SLACK))
-        stride = _stride(count)
-        whole, rest = divmod(count, stride)
-        segments = [Segment(end / count, whole * stride, stride), Segment(end / count, rest, max(rest, 1))]
-    else:
-        if interval > end * (1 + SLACK):
-            raise StepError(f"save_every: {interval:g} s is longer than the run of {end:g} s")
-        stride = ceil(interval / step * (1 - SLACK))
-        whole = floor(min(end / interval * (1 + SLACK), 2 * MOST_ROWS))
-        if whole > MOST_ROWS:
-            raise InputError(
-                f"save_every: {interval:g} s would keep {end / interval:.3g} rows, at most {MOST_ROWS} are possible"
-            )
-        remaining = end - whole * interval
-        rest = ceil(remaining / (interval / stride) * (1 - SLACK)) if remaining > SLACK * interval else 0
-        segments = [
-            Segment(interval / stride, whole * stride, stride),
-            Segment(remaining / max(rest, 1), rest, max(rest, 1)),
-        ]
-    return [segment for segment in segments if segment.steps]
-
-
-def _stride(count: int) -> int:
-    """Return how many steps lie between rows by default: few enough rows, and a divisor where one is near."""
-    least = ceil(count / MOST_ROWS_BY_DEFAULT)
-    return next((stride for stride in range(least, min(2 * least, least + 10_000)) if count % stride == 0), least)
 
 
 def _check_kinds(system: Any, state: Any, integrator: Any) -> None:
@@ -209,7 +157,7 @@ class _Run:
         self._begin()
 
     def _begin(self) -> None:
-        """Look at the start: overlap, a potential that is not a number; and keep the references."""
+        """Look at the start: overlap; and keep the references."""
         energy, *momentum, rotation_error, separation = pair_measure(self.state, self.constants)
         if separation == 0 or (
             separation < self.surfaces[0] and pair_touches(self.state, self.surfaces, *self.state[:3])
@@ -219,10 +167,6 @@ class _Run:
                 f"state: {primary} and {secondary} overlap at the start, {separation:g} m apart: "
                 "expected surfaces that do not touch; move them further apart"
             )
-        if not (np.isfinite(energy) and np.all(np.isfinite(self.state))):
-            raise InputError(
-                "state: energy, force or torque at the start is not a number: look at the positions and at the gravity"
-            )
         self.watch[loop.ENERGY] = energy
         self.watch[loop.ANGULAR_MOMENTUM : loop.ANGULAR_MOMENTUM + 3] = momentum
         self.watch[loop.ROTATION_ERROR] = rotation_error
@@ -231,7 +175,7 @@ class _Run:
 
     def go(self, show: Any) -> None:
         """Take all segments, as far as it goes."""
-        with _keyboard() as self.pressed:
+        with keyboard() as self.pressed:
             for segment in self.segments:
                 self._take(segment, show)
                 if self.code != status.COMPLETED or self.pressed:
@@ -376,42 +320,6 @@ class _Run:
 def _over(error: float, size: float) -> float:
     """Return a relative error; the absolute one where there is nothing to compare it with."""
     return float(error / size) if size > 0 else error
-
-
-@contextmanager
-def _keyboard() -> Iterator[list[int]]:
-    """Give a list that stays empty until Ctrl-C, which then waits for the end of the chunk.
-
-    Only where Python's own handler is in place: in another thread, or under somebody else's, nothing changes.
-    """
-    pressed: list[int] = []
-    ours = threading.current_thread() is threading.main_thread()
-    if not ours or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
-        yield pressed
-        return
-    signal.signal(signal.SIGINT, lambda number, _: pressed.append(number))
-    try:
-        yield pressed
-    finally:
-        signal.signal(signal.SIGINT, signal.default_int_handler)
-
-
-@contextmanager
-def _bar(end: float, progress: bool) -> Iterator[Any]:
-    """Give a function that shows how far the run is; it appears only for runs of more than a second."""
-    if not progress:
-        yield lambda _: None
-        return
-    from tqdm import tqdm
-
-    unit, size = ("d", u.day.to(u.s)) if end > 2 * u.day.to(u.s) else ("s", 1.0)
-    layout_of_bar = "{desc}{percentage:3.0f}%|{bar}| {n:.6g}/{total:.6g} {unit} simulated, {remaining} left"
-    with tqdm(total=end / size, unit=unit, delay=1.0, bar_format=layout_of_bar, leave=False) as bar:
-
-        def show(elapsed: float) -> None:
-            bar.update(elapsed / size - bar.n)
-
-        yield show
 
 
 def provenance() -> dict[str, str]:

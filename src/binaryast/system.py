@@ -114,6 +114,26 @@ class System(Value):
         one, two = self.secondary.si.mass, self.primary.si.mass
         return one * two / (one + two)
 
+    def attraction(self, x: Floats, r: Floats) -> tuple[float, ...]:
+        """Return U, dU/dX (3) and M (3) at X (3,) and R (3, 3), all plain SI floats.
+
+        Raises
+        ------
+        InputError
+            Where the potential gives something that is not a number, or raises.
+        """
+        try:
+            values: tuple[float, ...] = self.gravity.potential(self.parameters, *x, *r.ravel())
+        except InputError:
+            raise
+        except Exception as error:  # whatever a user's function raises
+            raise InputError(f"gravity: the potential raised {type(error).__name__}: {brief(error)}") from None
+        if not np.all(np.isfinite(values)):
+            raise InputError(
+                f"gravity: at X = {brief(x)} m it is not a number: too near, too far, or a wrong potential"
+            )
+        return values
+
     def mutual_gravity(self, position: Quantity, attitude: Any = None) -> MutualGravity:
         """Return energy, force and torques of one configuration.
 
@@ -137,11 +157,7 @@ class System(Value):
         if not np.any(x):
             raise InputError("position: the mass centres coincide: expected a position that is not zero")
         r = np.eye(3) if attitude is None else rotation(attitude, "attitude", ())
-        u, *rest = self.gravity.potential(self.parameters, *x, *r.ravel())
-        if not np.all(np.isfinite([u, *rest])):
-            raise InputError(
-                f"position: the gravity at {brief(x)} m is not a number: too near, too far, or a wrong potential"
-            )
+        u, *rest = self.attraction(x, r)
         gradient, moment = np.array(rest[:3]), np.array(rest[3:])
         return MutualGravity(
             energy=quantity(u, "J"),

@@ -66,7 +66,13 @@ def barycentre(system: System, state: State) -> Barycentre:
 
 
 def to_working(system: System, state: State) -> Floats:
-    """Return the working state, complete with what its configuration exerts."""
+    """Return the working state, complete with what its configuration exerts.
+
+    Raises
+    ------
+    InputError
+        Where gravity is not a number there, or a user's potential raises.
+    """
     working = np.zeros(layout.STATE_SIZE)
     position, velocity, attitude, spin = state.si
     working[layout.POSITION : layout.POSITION + 3] = position[1] - position[0]
@@ -78,7 +84,10 @@ def to_working(system: System, state: State) -> Floats:
     ):
         working[at_attitude : at_attitude + 4] = quaternions[i]
         working[at_momentum : at_momentum + 3] = system.bodies[i].si.moments * spin[i]
-    prepare(working, system.gravity.potential, system.parameters)
+    to_primary = attitude[0].T
+    if np.any(working[layout.POSITION : layout.POSITION + 3]):  # mass centres in one place are refused as an overlap
+        system.attraction(to_primary @ (position[1] - position[0]), to_primary @ attitude[1])
+        prepare(working, system.gravity.potential, system.parameters)
     return working
 
 
