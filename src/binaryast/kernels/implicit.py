@@ -57,6 +57,8 @@ def solve(inertia: Array, g: Array) -> tuple[Array, int]:
     if not sine < 1.0:
         return f, -1
     f = f * (asin(min(sine, 0.95)) / sine)  # exact for a spin about a principal axis, held back near the fold
+    first, second, _, _ = rodrigues_coefficients(sqrt(f @ f))
+    f = np.linalg.solve(inertia, g - second * np.cross(f, inertia @ f)) / first  # one pass with the gyroscopic term
     for iteration in range(1, MOST_ITERATIONS + 1):
         matrix = gradient(inertia, f)
         correction: Array = np.linalg.solve(matrix, g - residual_function(inertia, f))
