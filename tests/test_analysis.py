@@ -54,8 +54,13 @@ def test_what_cannot_be_read_off(run: ba.Trajectory) -> None:
         ba.analysis.mutual_period(run[:5])
     with pytest.raises(InputError, match="at least 2"):
         ba.analysis.orbit_angle(run[:1])
-    with pytest.raises(InputError, match="four rows"):
+    with pytest.raises(InputError, match="save more often"):
         ba.analysis.mutual_period(run[::9])
+    system, state = ba.catalogue.load("didymos")  # rows a little more than a turn apart look slow
+    long = ba.propagate(system, state, duration=500 * u.day, integrator=ba.LGVI(60 * u.s), save_every=12 * u.h)
+    for read in (ba.analysis.mutual_period, ba.analysis.orbit_angle, ba.analysis.libration_angle):
+        with pytest.raises(InputError, match="save more often"):
+            read(long)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -95,7 +100,7 @@ def test_pictures_in_files(run: ba.Trajectory, tmp_path: Path, suffix: str) -> N
 def test_pictures_that_cannot_be(run: ba.Trajectory, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="kind"):
         ba.plotting.save(run, tmp_path / "run.png", kind="portrait")
-    with pytest.raises(InputError, match="xyz"):
+    with pytest.raises(InputError, match="ends in png, pdf, svg"):
         ba.plotting.save(run, tmp_path / "run.xyz")
     assert list(tmp_path.iterdir()) == []
 
@@ -123,5 +128,6 @@ def test_short_runs_can_be_drawn(run: ba.Trajectory, tmp_path: Path, rows: slice
 
 
 def test_something_else_than_a_run() -> None:
-    with pytest.raises(InputError, match=r"expected a ba\.Trajectory"):
-        ba.analysis.orbit_angle("run")
+    for read in (ba.analysis.orbit_angle, ba.plotting.separation, ba.plotting.overview):
+        with pytest.raises(InputError, match=r"expected a ba\.Trajectory"):
+            read("run")

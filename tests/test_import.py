@@ -40,7 +40,7 @@ def test_every_public_name_is_documented_with_an_example() -> None:
 
 def test_values_pickle() -> None:
     system, state = ba.catalogue.load("dumbbells")
-    scenario = ba.catalogue.scenario("moshup")
+    scenario = ba.catalogue.entry("moshup")
     for value in (system, state, scenario, system.gravity, ba.SecondDegree(), ba.PointMass(), scenario.integrator):
         again = pickle.loads(pickle.dumps(value))
         assert type(again) is type(value)

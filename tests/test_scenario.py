@@ -15,7 +15,7 @@ PLAIN = ba.catalogue.text("didymos")
 
 @pytest.mark.parametrize("name", ba.catalogue.names())
 def test_every_entry_runs_and_has_sources(name: str) -> None:
-    entry = ba.catalogue.scenario(name)
+    entry = ba.catalogue.entry(name)
     assert entry.title
     assert entry.sources
     assert ba.catalogue.title(name) == entry.title
@@ -71,6 +71,12 @@ def test_the_other_ways_to_start() -> None:
     assert inertial.separation == 1200 * u.m
 
 
+def test_dates_of_toml_with_a_zone() -> None:
+    for date in ('"2022-09-26T23:14:24 UTC"', "2022-09-26T23:14:24Z", "2022-09-27T01:14:24+02:00"):
+        state = loads(PLAIN.replace("[state]", f"[state]\nepoch = {date}"), name="x", where="x").state
+        assert state.epoch.utc.isot == "2022-09-26T23:14:24.000"
+
+
 def changed(old: str, new: str) -> str:
     assert old in PLAIN
     return PLAIN.replace(old, new, 1)
@@ -107,6 +113,7 @@ def changed(old: str, new: str) -> str:
         (changed("[state]", "sources = 1\n[state]"), "sources"),
         (changed('name = "Didymos"', 'name = "a\\u0000b"'), "printable"),
         ("a = " + 600 * "[" + 600 * "]", "not TOML"),
+        (changed('spins = ["2.26 h", "synchronous"]', "spins = [2.26, 11.9]"), r'spins\[0\].*such as "2.26 h"'),
         ("bodies = 1\nstate = 2\nrun = 3", "bodies: expected two tables"),
         ("", "bodies is missing"),
         ("[[bodies]\n", "not TOML"),

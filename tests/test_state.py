@@ -140,10 +140,11 @@ def test_the_reduction_and_back() -> None:
     np.testing.assert_allclose(relative.R, reduced[:3, :3], atol=1e-15)
     np.testing.assert_allclose(relative.X.value, reduced[:3, 3], rtol=1e-13)
     np.testing.assert_allclose(relative.Omega.value, relative.R @ state.si.spin[1])
-    back = relative.to_state(epoch=state.epoch, frame=state.frame)
+    back = relative.to_state()
     for one, two in zip(back.si, state.si, strict=True):
         np.testing.assert_allclose(one, two, rtol=1e-13, atol=1e-13)
     assert back.epoch == state.epoch
+    assert back.frame == state.frame
 
 
 def test_without_x2_the_barycentre_is_at_rest(didymos: ba.System) -> None:

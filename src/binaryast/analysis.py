@@ -24,7 +24,7 @@ def orbit_angle(run: Trajectory) -> Quantity:
     Raises
     ------
     InputError
-        For a run of fewer than two rows.
+        For a run of fewer than two rows, or rows half a turn or more apart.
 
     Examples
     --------
@@ -35,7 +35,8 @@ def orbit_angle(run: Trajectory) -> Quantity:
     >>> print(ba.analysis.orbit_angle(run)[-1].to("deg").round(2))
     360.0 deg
     """
-    x, _ = _relative(run)
+    x, v = _relative(run)
+    _often_enough(run, _orbit_rate(x, v), np.pi)
     first, second, _ = mean_orbit_axes(run)
     angle = np.unwrap(np.arctan2(x @ second, x @ first))
     return quantity(angle - angle[0], "rad")
@@ -91,8 +92,7 @@ def mutual_period(run: Trajectory) -> Quantity:
     turns = angle[-1] / (2 * np.pi)
     if turns < 1:
         raise InputError(f"mutual_period: the run covers {turns:.3g} turns: expected at least one")
-    if np.abs(np.diff(angle)).max() > np.pi / 2:
-        raise InputError("mutual_period: fewer than four rows a turn: save more often")
+    _often_enough(run, _orbit_rate(*_relative(run)), np.pi / 2)
     slope = float(np.polyfit(run.si.time, angle, 1)[0])
     return quantity(2 * np.pi / slope, "s").to("h")
 
@@ -127,9 +127,25 @@ def libration_angle(run: Trajectory) -> Quantity:
     length = np.linalg.norm(pole, axis=1, keepdims=True)
     if not np.all(length > 0):
         raise InputError("the pair moves on a line: there is no orbit plane")
+    _often_enough(run, _orbit_rate(x, v) + np.linalg.norm(run.si.spin[:, 1], axis=1), 2 * np.pi)
     across = np.cross(pole / length, along)
     axis = run.si.attitude[:, 1, :, 0]
     return quantity(np.unwrap(np.arctan2(np.sum(axis * across, axis=1), np.sum(axis * along, axis=1))), "rad")
+
+
+def _orbit_rate(x: Floats, v: Floats) -> Floats:
+    """Return the rate (N,) at which the line of centres turns [rad/s]."""
+    return np.asarray(np.linalg.norm(np.cross(x, v), axis=1) / np.sum(x * x, axis=1))
+
+
+def _often_enough(run: Trajectory, rate: Floats, most: float) -> None:
+    """Raise where something that turns at a rate may go round further than ``most`` [rad] between two rows."""
+    turn = float((np.maximum(rate[1:], rate[:-1]) * np.abs(np.diff(run.si.time))).max(initial=0.0))
+    if turn > most:
+        raise InputError(
+            f"rows are too far apart to follow the motion, {turn:.3g} rad of turn, expected at most {most:.3g}: "
+            "save more often"
+        )
 
 
 def _relative(run: Trajectory) -> tuple[Floats, Floats]:

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from itertools import permutations, product
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -78,7 +79,7 @@ class RigidBody(Value):
     turn: Floats = field(repr=False)
     offset: Quantity = field(repr=False)
     si: BodyFloats = field(repr=False)
-    given: dict[str, Quantity] = field(repr=False)
+    given: MappingProxyType[str, Quantity] = field(repr=False)
 
     def __init__(
         self,
@@ -101,7 +102,9 @@ class RigidBody(Value):
         if len(given) != 1:
             found = " and ".join(given) or "none"
             raise InputError(f"RigidBody {name}: give exactly one of mass=, density= and gm=, got {found}")
-        self._set(name=name, shape=shape, given=given | ({} if inertia is None else {"inertia": inertia}))
+        self._set(
+            name=name, shape=shape, given=MappingProxyType(given | ({} if inertia is None else {"inertia": inertia}))
+        )
         mass_si, gm_si = self._masses(**given)
         if not 1 / LARGEST < mass_si < LARGEST:
             raise InputError(f"RigidBody {name}: a mass of {mass_si:g} kg is beyond what can be computed with")

@@ -1,10 +1,9 @@
 """Real and classical systems by name, each a scenario file of the package with its sources."""
 
-import difflib
 import tomllib
 from importlib.resources import files
 
-from binaryast.errors import InputError
+from binaryast.errors import InputError, did_you_mean
 from binaryast.scenario import Scenario, loads
 from binaryast.state import State
 from binaryast.system import System
@@ -21,7 +20,7 @@ def names() -> list[str]:
     >>> ba.catalogue.names()
     ['didymos', 'dumbbells', 'moshup', 'patroclus']
     """
-    return sorted(entry.name.removesuffix(".toml") for entry in _ENTRIES.iterdir() if entry.name.endswith(".toml"))
+    return sorted(file.name.removesuffix(".toml") for file in _ENTRIES.iterdir() if file.name.endswith(".toml"))
 
 
 def load(name: str) -> tuple[System, State]:
@@ -49,11 +48,11 @@ def load(name: str) -> tuple[System, State]:
     >>> system.names
     ('Didymos', 'Dimorphos')
     """
-    entry = scenario(name)
-    return entry.system, entry.state
+    found = entry(name)
+    return found.system, found.state
 
 
-def scenario(name: str) -> Scenario:
+def entry(name: str) -> Scenario:
     """Return an entry as a whole: with its default step and duration, and the source of each number."""
     return loads(text(name), name=name, where=f"catalogue entry {name}")
 
@@ -69,7 +68,5 @@ def text(name: str) -> str:
     if not isinstance(name, str):
         raise InputError(f"expected the name of a catalogue entry, got {name!r}; there are {', '.join(known)}")
     if name not in known:
-        near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-        question = f": did you mean {near[0]!r}?" if near else ""
-        raise InputError(f"{name!r} is not in the catalogue{question}; it has {', '.join(known)}")
+        raise InputError(f"{name!r} is not in the catalogue{did_you_mean(name, known)}; it has {', '.join(known)}")
     return (_ENTRIES / f"{name}.toml").read_text(encoding="utf-8")

@@ -26,21 +26,7 @@ if TYPE_CHECKING:
     from binaryast.trajectory import Trajectory
 
 FAILED, WRONG_INPUT, INTERRUPTED = 1, 2, 130
-FIGURES = (
-    "status",
-    "message",
-    "steps",
-    "step",
-    "wall_time",
-    "max_relative_energy_error",
-    "max_energy_error",
-    "max_energy_error_over_potential",
-    "max_relative_angular_momentum_error",
-    "max_relative_linear_momentum_error",
-    "max_rotation_error",
-    "closest_approach",
-    "closest_approach_time",
-)
+RUN = ".h5"  # the suffix of a run
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -96,7 +82,10 @@ def _show_warning(message: Any, *_: Any, **__: Any) -> None:
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser whose errors are ours: one line, with a hint."""
+    """A parser whose errors are ours: one line, with a hint; options are not abbreviated."""
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(allow_abbrev=False, **options)
 
     def error(self, message: str) -> NoReturn:
         raise InputError(f"{message}; see '{self.prog} --help'")
@@ -159,14 +148,19 @@ def _file(action: argparse.Action) -> None:
 
 def _is_file(system: str) -> bool:
     """Whether an argument is meant as a file, not as a name of the catalogue."""
-    return Path(system).suffix in (".toml", ".h5") or os.sep in system
+    return Path(system).suffix.lower() in (".toml", RUN) or os.sep in system
 
 
 def _scenario(system: str) -> "Scenario":
     """Return the scenario of a file or a catalogue entry."""
     from binaryast import catalogue, scenario
 
-    return scenario.load(system) if _is_file(system) else catalogue.scenario(system)
+    if Path(system).suffix.lower() == RUN:
+        raise InputError(f"{system} is a run, not a scenario: draw it with binaryast plot, go on with binaryast run")
+    if not _is_file(system):
+        catalogue.text(system)  # an unknown name is said before anything is compiled
+    _say_if_cold()
+    return scenario.load(system) if _is_file(system) else catalogue.entry(system)
 
 
 def _list(_: argparse.Namespace) -> int:
@@ -178,6 +172,8 @@ def _list(_: argparse.Namespace) -> int:
 
 
 def _show(options: argparse.Namespace) -> int:
+    from binaryast.units import span
+
     entry = _scenario(options.system)
     if options.toml:
         print(entry.text, end="")
@@ -190,7 +186,7 @@ def _show(options: argparse.Namespace) -> int:
         print(f"    {body.si.mass:.6g} kg, GM {body.si.gm:.8g} m3/s2{density}; moments {moments} kg m2")
     print(f"  gravity: {entry.system.gravity!r}")
     print(f"  start: separation {entry.state.separation.value:.8g} m, axes {entry.state.frame}")
-    print(f"  by default: {entry.duration:g} in steps of {entry.integrator.step:g}")
+    print(f"  by default: {span(entry.duration.value)} in steps of {entry.integrator.step.value:g} s")
     for source in entry.sources:
         more = "".join(f"; {key}: {source[key]}" for key in ("uncertainty", "note") if key in source)
         print(f"  {source['what']}: {source['source']}{more}")
@@ -201,12 +197,12 @@ def _run(options: argparse.Namespace) -> int:
     from binaryast import storage
 
     stem = Path(options.system).stem if _is_file(options.system) else options.system
-    continued = Path(options.system).suffix == ".h5"
+    continued = Path(options.system).suffix.lower() == RUN
     default = f"{stem}-continued.h5" if continued else f"{stem}.h5"
     output = Path(default if options.output is None else options.output)
     picture = None if options.no_picture else Path(output.parent, f"{output.stem}.png")
     storage.refuse(output, force=options.force)
-    if output.suffix not in (".h5", ".hdf5"):
+    if output.suffix.lower() != RUN:
         raise InputError(f"--output: {output}: the file of a run is HDF5: give a name that ends in .h5")
     duration, step, save_every = (
         _time(getattr(options, name), f"--{name.replace('_', '-')}") for name in ("duration", "step", "save_every")
@@ -216,19 +212,36 @@ def _run(options: argparse.Namespace) -> int:
         storage.refuse(picture, force=options.force)
     run = _propagate(system, state, integrator, duration, save_every, progress=not options.json)
     run.write(output, force=options.force)
-    if picture is not None:
-        from binaryast import plotting
-
-        plotting.save(run, picture, force=options.force)
-    _report(run, output, picture, as_json=options.json)
+    drawn = picture is None or _draw(run, picture, output, force=options.force)
+    _report(run, output, picture if drawn else None, as_json=options.json)
     if run.status == "interrupted":
         left = duration.to_value("s") - run.si.time[-1]
         print(
             f"binaryast: stopped by Ctrl-C; what was computed is in {output}. "
-            f"Go on with: binaryast run {output} --duration {left:.9g}s",
+            f"Go on with: binaryast run {output} --duration {left:.9g}s"
+            + (f" --save-every {options.save_every}" if options.save_every else ""),
             file=sys.stderr,
         )
+    if not drawn:
+        return INTERRUPTED
     return {"failed": FAILED, "interrupted": INTERRUPTED}.get(run.status, 0)
+
+
+def _draw(run: "Trajectory", picture: Path, output: Path, *, force: bool) -> bool:
+    """Draw a run that is safely in its file; whether the picture is there."""
+    from binaryast import plotting
+
+    try:
+        plotting.save(run, picture, force=force)
+    except (KeyboardInterrupt, MemoryError, BinaryastError) as error:
+        reason = str(error) or type(error).__name__
+        print(
+            f"binaryast: warning: the run is in {output}, but its picture was not drawn ({reason}); "
+            f"draw it with: binaryast plot {output}",
+            file=sys.stderr,
+        )
+        return False
+    return True
 
 
 def _time(text: str | None, option: str) -> Any:
@@ -242,11 +255,10 @@ def _start(
     system: str, duration: Any, step: Any, save_every: Any, degree: int | None
 ) -> tuple["System", "State", "Integrator", Any, Any]:
     """Return what to run: a scenario or the end of an earlier run, with the options in the place of its own values."""
-    _say_if_cold()
     from binaryast import gravity
     from binaryast.integrators import LGVI
 
-    if Path(system).suffix == ".h5":
+    if Path(system).suffix.lower() == RUN:
         from binaryast.trajectory import Trajectory
 
         earlier = Trajectory.read(system)
@@ -288,13 +300,15 @@ def _propagate(
 def _report(run: "Trajectory", output: Path, picture: Path | None, *, as_json: bool) -> None:
     """Print the summary, or one JSON object."""
     from binaryast import analysis
+    from binaryast.trajectory import FIGURES
 
     try:
         period = analysis.mutual_period(run).value if run.energy_of_orbit[-1] < 0 else None
     except InputError:  # less than one turn, or too few rows to count turns
         period = None
     if as_json:
-        figures = {name: getattr(run, name) for name in FIGURES}
+        names = ("status", "message", "steps", "step", "wall_time", *FIGURES)
+        figures = {name: getattr(run, name) for name in names}
         result = {name: getattr(value, "value", value) for name, value in figures.items()}
         result |= {
             "names": list(run.system.names),
@@ -320,8 +334,9 @@ def _plot(options: argparse.Namespace) -> int:
 
     default = f"{Path(options.file).stem}.png"
     output = Path(default if options.output is None else options.output)
+    run = Trajectory.read(options.file)
     storage.refuse(output, force=options.force)
-    path = plotting.save(Trajectory.read(options.file), output, kind=options.kind, force=options.force)
+    path = plotting.save(run, output, kind=options.kind, force=options.force)
     print(f"written: {path}")
     return 0
 

@@ -1,5 +1,8 @@
 """Every error and warning of the package, under one root each."""
 
+import difflib
+from collections.abc import Iterable
+
 
 class BinaryastError(Exception):
     """Root of all errors of the package; its text is one line that says how to mend it."""
@@ -43,3 +46,9 @@ class StepWarning(BinaryastWarning):
 
 class EndWarning(BinaryastWarning):
     """A run that ended before its time."""
+
+
+def did_you_mean(word: str, words: Iterable[str]) -> str:
+    """Return a question that names the nearest of the words that are known, nothing if none is near."""
+    near = difflib.get_close_matches(word, list(words), n=1, cutoff=0.5)
+    return f": did you mean {near[0]!r}?" if near else ""

@@ -147,7 +147,7 @@ class PairPotential(Gravity):
     >>> gravity = ba.PairPotential(kepler, [1e10])
     """
 
-    function: Callable[..., Any]
+    function: Callable[..., Any] | str
     values: Sequence[float] = ()
 
     def __post_init__(self) -> None:

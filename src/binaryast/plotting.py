@@ -19,6 +19,7 @@ from binaryast.units import Floats, brief
 
 PRIMARY, SECONDARY, DARK = "#1f4e79", "#c8553d", "#333333"
 COLOURS = (PRIMARY, SECONDARY)
+FORMATS = ("png", "pdf", "svg")
 
 
 def _time(run: Trajectory) -> tuple[Floats, str]:
@@ -40,8 +41,10 @@ def _length(largest: float) -> tuple[float, str]:
     return (1000.0, "km") if largest >= 10000 else (1.0, "m")
 
 
-def _axes(ax: Axes | None) -> Axes:
-    """Return the Axes given, or one in a new figure of pyplot's, which ``plt.show()`` will show."""
+def _axes(run: Trajectory, ax: Axes | None) -> Axes:
+    """Look at what is to be drawn; return the Axes given, or one in a new figure, which ``plt.show()`` will show."""
+    if not isinstance(run, Trajectory):
+        raise InputError(f"run: expected a ba.Trajectory, got {brief(run)}")
     if ax is not None:
         return ax
     import matplotlib.pyplot as plt  # half a second, not needed where a figure goes straight to a file
@@ -85,7 +88,7 @@ def orbit(run: Trajectory, ax: Axes | None = None, *, frame: str = "inertial") -
     >>> run = ba.propagate(system, state, duration=1 * u.day, integrator=ba.LGVI(step=40 * u.s))
     >>> ax = ba.plotting.orbit(run)
     """
-    ax = _axes(ax)
+    ax = _axes(run, ax)
     if frame == "inertial":
         plane = mean_orbit_axes(run)[:2]
         paths, attitudes = run.si.position, run.si.attitude[-1]
@@ -137,7 +140,7 @@ def _outline(matrix: Floats) -> Floats:
 
 def separation(run: Trajectory, ax: Axes | None = None) -> Axes:
     """Draw the distance of the mass centres against time."""
-    ax = _axes(ax)
+    ax = _axes(run, ax)
     size, unit = _length(float(run.separation.value.max()))
     ax.plot(_time(run)[0], run.separation.value / size, color=DARK, lw=0.8)
     return _over_time(ax, run, f"separation [{unit}]", "Separation of the mass centres")
@@ -145,7 +148,7 @@ def separation(run: Trajectory, ax: Axes | None = None) -> Axes:
 
 def spins(run: Trajectory, ax: Axes | None = None) -> Axes:
     """Draw each body's spin rate against time: its relative change, or itself where one starts at rest."""
-    ax = _axes(ax)
+    ax = _axes(run, ax)
     rates = np.linalg.norm(run.si.spin, axis=-1)
     relative = bool(np.all(rates[0] > 0))
     for i, name in enumerate(run.system.names):
@@ -158,14 +161,14 @@ def spins(run: Trajectory, ax: Axes | None = None) -> Axes:
 
 def libration(run: Trajectory, ax: Axes | None = None) -> Axes:
     """Draw the angle from the line of centres to the secondary's x axis against time."""
-    ax = _axes(ax)
+    ax = _axes(run, ax)
     ax.plot(_time(run)[0], np.degrees(libration_angle(run).value), color=SECONDARY, lw=0.8)
     return _over_time(ax, run, "libration angle [deg]", f"Libration of {_plain(run.system.names[1])}")
 
 
 def energy_exchange(run: Trajectory, ax: Axes | None = None) -> Axes:
     """Draw how energy goes to and fro between orbit, spins and potential, each from its value at the start."""
-    ax = _axes(ax)
+    ax = _axes(run, ax)
     time, _ = _time(run)
     scale = abs(run.si.potential_energy[0])
     for values, label, colour in (
@@ -180,7 +183,7 @@ def energy_exchange(run: Trajectory, ax: Axes | None = None) -> Axes:
 
 def conserved(run: Trajectory, ax: Axes | None = None) -> Axes:
     """Draw the errors of energy, angular momentum and rotation at the saved rows, on a logarithmic axis."""
-    ax = _axes(ax)
+    ax = _axes(run, ax)
     time, _ = _time(run)
     energy, momentum = run.energy.value, run.angular_momentum.value
     curves: tuple[tuple[Floats, str, str], ...] = (
@@ -234,6 +237,8 @@ def overview(run: Trajectory, figure: Figure | None = None) -> Figure:
     >>> run = ba.propagate(system, state, duration=1 * u.day, integrator=ba.LGVI(step=40 * u.s))
     >>> figure = ba.plotting.overview(run)
     """
+    if not isinstance(run, Trajectory):
+        raise InputError(f"run: expected a ba.Trajectory, got {brief(run)}")
     if figure is None:
         import matplotlib.pyplot as plt
 
@@ -309,6 +314,9 @@ def save(run: Trajectory, path: str | Path, *, kind: str | None = None, force: b
         For an unknown kind or format.
     """
     path = as_path(path)
+    kind_of_file = path.suffix.lstrip(".").lower() or "png"
+    if kind_of_file not in FORMATS:
+        raise InputError(f"{path}: expected a name that ends in {', '.join(FORMATS)}")
     refuse(path, force=force)
     if kind is not None and str(kind) not in KINDS:
         raise InputError(f"{kind!r} is not a kind of picture: expected one of {', '.join(KINDS)}")
@@ -319,7 +327,7 @@ def save(run: Trajectory, path: str | Path, *, kind: str | None = None, force: b
         else:
             figure = Figure(layout="constrained")
             KINDS[kind](run, figure.subplots())
-        figure.savefig(memory, format=path.suffix.lstrip(".") or "png", dpi=110)
+        figure.savefig(memory, format=kind_of_file, dpi=110)
     except (ValueError, RuntimeError) as error:
         raise InputError(f"{path}: {brief(error)}") from None
     return replace_whole(path, memory.getvalue(), force=force)

@@ -53,7 +53,7 @@ def propagate(
         How, such as ``LGVI(step=40 * u.s)``. The step used is the largest one up to this that divides ``save_every``.
     save_every : Quantity, optional
         Time between saved rows; met exactly, with one more row at the end where it does not divide ``duration``. By
-        default at most about 2000 rows are kept, each a whole number of steps apart.
+        default at most 2000 rows are kept, each a whole number of steps apart.
     progress : bool
         Whether to show a bar with the simulated and the remaining time, on standard error.
 
@@ -188,7 +188,7 @@ class _Run:
         rows = np.empty((segment.steps // segment.stride, layout.ROW_SIZE))
         self.rows.append(rows)
         self.watch[loop.STEPS] = 0
-        chunk = 1000
+        chunk = 16
         while (
             (left := segment.steps - int(self.watch[loop.STEPS])) and self.code == status.COMPLETED and not self.pressed
         ):
@@ -197,7 +197,7 @@ class _Run:
             self.code = self._advance(segment, count, rows)
             spent = time.perf_counter() - began
             self.wall_time += spent
-            chunk = max(1000, int(count * CHUNK_SECONDS / max(spent, 1e-6)))
+            chunk = max(1, min(100 * count, int(count * CHUNK_SECONDS / max(spent, 1e-6))))
             show(self.elapsed + self.watch[loop.STEPS] * segment.step)
         self._keep(segment)
 

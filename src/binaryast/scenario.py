@@ -4,11 +4,11 @@ The words are those of the Python interface: ``type`` names a class or a way to 
 arguments.
 """
 
-import difflib
 import inspect
 import tomllib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from astropy.units import Quantity
 
 from binaryast import gravity, shapes
 from binaryast.bodies import RigidBody
-from binaryast.errors import InputError, ScenarioError, StorageError
+from binaryast.errors import InputError, ScenarioError, StorageError, did_you_mean
 from binaryast.integrators import LGVI, Integrator
 from binaryast.state import RelativeState, State
 from binaryast.storage import as_path
@@ -30,6 +30,7 @@ GRAVITIES = {kind.__name__: kind for kind in (gravity.SecondDegree, gravity.Poin
 STATES = ("circular_orbit", "from_elements", "inertial", "relative")
 PLAIN = ("weights", "eccentricity", "R", "R2", "attitude", "epoch", "frame")  # arguments that have no unit
 EXAMPLES = {  # what a text with a unit looks like
+    "X": "[1, 0, 0] km",
     "velocity": "[[0, 0, 0], [0, 17, 0]] cm / s",
     "position": "[[0, 0, 0], [1, 0, 0]] km",
     "spin": "[[0, 0, 1], [0, 0, 1]] deg / min",
@@ -172,9 +173,8 @@ def _state(table: dict[str, Any], system: System) -> State:
     if kind == "inertial":
         return _call(State, {}, arguments, "state")  # type: ignore[no-any-return]
     if kind == "relative":
-        when = {key: arguments.pop(key) for key in ("epoch", "frame") if key in arguments}
         relative: RelativeState = _call(RelativeState, {}, arguments, "state")
-        return relative.to_state(system, **when)
+        return relative.to_state(system)
     return _call(getattr(State, kind), {"system": system}, arguments, "state")  # type: ignore[no-any-return]
 
 
@@ -194,14 +194,16 @@ def _argument(value: Any, key: str, where: str) -> Any:
     """Return an argument of a constructor: a quantity from its text, lists of them, and what is in `PLAIN` as it is."""
     if key in PLAIN:
         return value
-    if isinstance(value, list):
-        return [
-            _argument(item, key, f"{where}[{i}]") if isinstance(item, str) else item for i, item in enumerate(value)
-        ]
     example = EXAMPLES.get(key, "1 m")
+    if isinstance(value, list) and (key == "spins" or any(isinstance(item, str) for item in value)):
+        return [_argument(item, key, f"{where}[{i}]") for i, item in enumerate(value)]
+    if isinstance(value, list) and key == "pole":  # three numbers
+        return value
+    if isinstance(value, list):
+        raise InputError(f'{where}: expected one text with a unit such as "{example}", got {brief(value)}')
     if value == "synchronous":
         return value
-    return parse(_text(value, where, example.lstrip("[0123456789, ]")), where, example)
+    return parse(_text(value, where, example.lstrip("[0123456789., ]")), where, example)
 
 
 def _time(value: Any, where: str) -> Quantity:
@@ -211,6 +213,8 @@ def _time(value: Any, where: str) -> Quantity:
 
 def _epoch(value: Any) -> Time:
     """Return an epoch: an ISO date and time, followed by its scale, TDB by default."""
+    if isinstance(value, datetime) and value.tzinfo is not None:
+        value = f"{value.astimezone(UTC).replace(tzinfo=None).isoformat()} UTC"
     words = str(value).split()
     scale = words.pop().lower() if len(words) > 1 and words[-1].isalpha() else "tdb"
     try:
@@ -260,7 +264,7 @@ def _choice(table: dict[str, Any], choices: Iterable[str], where: str) -> str:
     kind = _text(table["type"], f"{where}.type")
     if kind not in choices:
         raise InputError(
-            f"{where}.type: {kind!r} is not known{_nearest(kind, choices)}; expected one of {', '.join(choices)}"
+            f"{where}.type: {kind!r} is not known{did_you_mean(kind, choices)}; expected one of {', '.join(choices)}"
         )
     return kind
 
@@ -270,16 +274,12 @@ def _known(table: dict[str, Any], keys: Iterable[str], where: str) -> None:
     keys = list(keys)
     for key in table:
         if key not in keys:
-            raise InputError(f"{where}{key}: unknown key{_nearest(key, keys)}; known are {', '.join(keys) or 'none'}")
+            raise InputError(
+                f"{where}{key}: unknown key{did_you_mean(key, keys)}; known are {', '.join(keys) or 'none'}"
+            )
 
 
 def _needed(table: dict[str, Any], keys: Iterable[str], where: str) -> None:
     for key in keys:
         if key not in table:
             raise InputError(f"{where}{key} is missing")
-
-
-def _nearest(word: str, words: Iterable[str]) -> str:
-    """Return a question that names the nearest word, if one is near."""
-    near = difflib.get_close_matches(word, list(words), n=1, cutoff=0.5)
-    return f": did you mean {near[0]!r}?" if near else ""

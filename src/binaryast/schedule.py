@@ -52,5 +52,5 @@ def schedule(end: float, step: float, interval: float | None) -> list[Segment]:
 
 def _stride(count: int) -> int:
     """Return how many steps lie between rows by default: few enough rows, and a divisor where one is near."""
-    least = ceil(count / MOST_ROWS_BY_DEFAULT)
+    least = ceil(count / (MOST_ROWS_BY_DEFAULT - 2))  # the start and what remains are rows too
     return next((stride for stride in range(least, min(2 * least, least + 10_000)) if count % stride == 0), least)

@@ -173,9 +173,8 @@ class Dumbbell(Shape):
     @property
     def pieces(self) -> list[tuple[Floats, Floats]]:
         """The surface as ellipsoids."""
-        if self.points is None:  # never: set by the constructor
-            return []
-        return [(centre, np.full(3, self.radius.value)) for centre in self.points[0]]
+        half = self.length.value / 2
+        return [(np.array([x, 0.0, 0.0]), np.full(3, self.radius.value)) for x in (half, -half)]
 
 
 @dataclass(frozen=True, eq=False)

@@ -256,6 +256,8 @@ class RelativeState(Value):
         Position and velocity of the primary, R2^T x2 (38) and R2^T v2 (39).
     R2 : array-like, optional
         Attitude of the primary; the identity by default.
+    epoch, frame
+        As for `State`.
 
     Examples
     --------
@@ -276,6 +278,8 @@ class RelativeState(Value):
     X2: Quantity | None = None
     V2: Quantity | None = None
     R2: Any = None
+    epoch: Time | None = None
+    frame: str = "local"
 
     def __post_init__(self) -> None:
         leading = as_quantity(self.X, "m", "X").shape[:-1]
@@ -292,10 +296,19 @@ class RelativeState(Value):
         """Return (34)-(39) of a pair's state."""
         if len(state.si.position) != 2:
             raise InputError(f"relative: expected the state of a pair, got {len(state.si.position)} bodies")
-        return cls.from_arrays(*state.si)
+        return cls.from_arrays(*state.si, epoch=state.epoch, frame=state.frame)
 
     @classmethod
-    def from_arrays(cls, position: Floats, velocity: Floats, attitude: Floats, spin: Floats) -> "RelativeState":
+    def from_arrays(
+        cls,
+        position: Floats,
+        velocity: Floats,
+        attitude: Floats,
+        spin: Floats,
+        *,
+        epoch: Time | None = None,
+        frame: str = "local",
+    ) -> "RelativeState":
         """Return (34)-(39) of SI arrays (..., n, 3) and (..., n, 3, 3), primary first."""
         to_primary = np.swapaxes(attitude[..., 0, :, :], -1, -2)
 
@@ -312,17 +325,17 @@ class RelativeState(Value):
             X2=quantity(turned(position[..., 0, :]), "m"),  # (38)
             V2=quantity(turned(velocity[..., 0, :]), "m / s"),  # (39)
             R2=attitude[..., 0, :, :],
+            epoch=epoch,
+            frame=frame,
         )
 
-    def to_state(self, system: System | None = None, *, epoch: Time | None = None, frame: str = "local") -> State:
+    def to_state(self, system: System | None = None) -> State:
         """Return the inertial state.
 
         Parameters
         ----------
         system : System, optional
             Needed where X2 or V2 is missing: the barycentre is then at rest in the origin.
-        epoch, frame
-            Of the state.
 
         Returns
         -------
@@ -348,8 +361,8 @@ class RelativeState(Value):
             velocity=Quantity([self.R2 @ V2, self.R2 @ (V2 + self.V)]),
             attitude=np.array([self.R2, self.R2 @ self.R]),
             spin=Quantity([self.Omega2, self.R.T @ self.Omega]),
-            epoch=epoch,
-            frame=frame,
+            epoch=self.epoch,
+            frame=self.frame,
         )
 
 

@@ -1,16 +1,18 @@
 """HDF5 files: datasets and attributes by name, and the objects that they came from.
 
-Every dataset is in SI and carries its unit. A file is made in memory first and appears under its name in one move, so
-there is never half of one. ``format_version`` is raised when a reader of the previous version would misread the file.
+Every dataset carries its unit, one of SI; attributes are in s, m and J. A file is made in memory first and appears
+under its name in one move, so there is never half of one. ``format_version`` is raised when a reader of the previous
+version would misread the file.
 """
 
 import contextlib
 import hashlib
+import inspect
 import io
 import os
+import sys
 import tempfile
 from collections.abc import Callable, Sequence
-from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -191,13 +193,17 @@ def _put(group: h5py.Group, name: str, value: Any) -> None:
     if value is None:
         return
     if isinstance(value, Quantity):
-        dataset = group.create_dataset(name, data=value.si.value)
-        dataset.attrs["unit"] = value.si.unit.to_string()
+        dataset = group.create_dataset(name, data=value.value)
+        dataset.attrs["unit"] = value.unit.to_string()
     elif isinstance(value, np.ndarray):
         group.create_dataset(name, data=value).attrs["unit"] = ""
     elif isinstance(value, Time):
         _put_group(group, name, "Time", {"jd1": value.tdb.jd1, "jd2": value.tdb.jd2})
+    elif isinstance(value, gravity.Gravity) and type(value).__name__ not in CLASSES:
+        _put(group, name, gravity.PairPotential(f"{type(value).__module__}.{type(value).__qualname__}"))
     elif isinstance(value, Value):
+        if type(value).__name__ not in CLASSES:
+            raise StorageError(f"{type(value).__name__}: an object of a class of yours cannot be kept in a file")
         _put_group(group, name, type(value).__name__, value.arguments())
     elif isinstance(value, dict):
         _put_group(group, name, "dict", value)
@@ -205,7 +211,8 @@ def _put(group: h5py.Group, name: str, value: Any) -> None:
         _put_group(group, name, "tuple", {str(i): item for i, item in enumerate(value)})
     elif callable(value):
         function = getattr(value, "py_func", value)
-        _put_group(group, name, "function", {"module": function.__module__, "name": function.__qualname__})
+        names = {"module": function.__module__, "name": function.__qualname__, "source": _source_hash(function)}
+        _put_group(group, name, "function", names)
     else:
         group.attrs[name] = value
 
@@ -230,7 +237,7 @@ def _get(group: h5py.Group) -> Any:
     if kind == "Time":
         return Time(items["jd1"], items["jd2"], format="jd", scale="tdb")
     if kind == "function":
-        return _function(items["module"], items["name"])
+        return _function(**items)
     if kind not in CLASSES:
         raise KeyError(f"it holds a {kind}, which this version does not know")
     return CLASSES[kind](**items)
@@ -251,10 +258,20 @@ def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _function(module: str, name: str) -> Callable[..., Any] | str:
-    """Return a user's function where it can be imported, else its name."""
+def _source_hash(function: Callable[..., Any]) -> str:
+    """Return a hash of a function's source, nothing where there is none to see."""
     try:
-        function: Callable[..., Any] = getattr(import_module(module), name)
-    except (ImportError, AttributeError):
+        return hashlib.blake2b(inspect.getsource(function).encode(), digest_size=8).hexdigest()
+    except (OSError, TypeError):
+        return ""
+
+
+def _function(module: str, name: str, source: str) -> Callable[..., Any] | str:
+    """Return a user's function if its module is loaded and it is still the same, else its name.
+
+    Nothing is imported because a file says so, and a script's own functions are never taken for those of another.
+    """
+    function = getattr(sys.modules.get(module), name, None)
+    if module == "__main__" or function is None or not source:
         return f"{module}.{name}"
-    return function
+    return function if _source_hash(getattr(function, "py_func", function)) == source else f"{module}.{name}"

@@ -16,7 +16,7 @@ from binaryast.values import Value
 ROTATION_TOLERANCE = 1e-9  # ||I - R^T R|| of an attitude that a user gives
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MutualGravity:
     """The mutual gravity of a pair in one configuration; vectors are in the primary's frame.
 
@@ -89,9 +89,14 @@ class System(Value):
         parameters = self.gravity.parameters(bodies[1], bodies[0])
         if not np.all(np.isfinite(parameters)):
             raise InputError("System: the masses are beyond what can be computed with")
-        object.__setattr__(self, "parameters", parameters)  # writable: compiled functions take no read-only array
+        self._set(_parameters=parameters)
 
-    parameters: Floats = field(init=False, repr=False)
+    _parameters: Floats = field(init=False, repr=False)
+
+    @property
+    def parameters(self) -> Floats:
+        """What the potential needs of the bodies: a copy, for compiled functions take no read-only array."""
+        return self._parameters.copy()
 
     @property
     def primary(self) -> RigidBody:

@@ -16,7 +16,7 @@ from binaryast.errors import CheckError, InputError
 from binaryast.integrators import Integrator
 from binaryast.state import RelativeState, State
 from binaryast.system import System
-from binaryast.units import Floats, brief, checked, quantity
+from binaryast.units import Floats, brief, checked, numbers, quantity, span
 from binaryast.values import Value
 
 if TYPE_CHECKING:
@@ -77,7 +77,8 @@ class Trajectory(Value):
     max_relative_energy_error, max_energy_error, max_energy_error_over_potential : float, Quantity, float
         Largest |E - E0| over every step: over |E0|, itself, and over |U0|. Spin energy hides the orbit in the first.
     max_relative_angular_momentum_error, max_relative_linear_momentum_error, max_rotation_error : float
-        Over every step; linear momentum over the saved rows and relative to sum m |v|.
+        Over every step. A pair's linear momentum is kept by construction: its figure, relative to sum m |v|, is the
+        round-off of the saved rows.
     closest_approach, closest_approach_time : Quantity
         Smallest distance of the mass centres over every step, and when.
     integrator, system, epoch, frame, provenance
@@ -129,6 +130,8 @@ class Trajectory(Value):
 
     def _rows(self, index: slice) -> "Trajectory":
         """Return some of the rows; the figures remain those of the whole run."""
+        if index.step is not None and index.step <= 0:
+            raise ValueError
         if not len(self.si.time[index]):
             raise IndexError(f"run[{index.start}:{index.stop}] has no rows: there are {len(self)}")
         return replace(self, si=TrajectoryFloats(*(array[index] for array in self.si)))
@@ -161,7 +164,7 @@ class Trajectory(Value):
     @cached_property
     def relative(self) -> RelativeState:
         """The paper's reduced variables (34)-(39), time first."""
-        return RelativeState.from_arrays(*self.si[1:5])
+        return RelativeState.from_arrays(*self.si[1:5], epoch=self.epoch, frame=self.frame)
 
     @property
     def separation(self) -> Quantity:
@@ -247,23 +250,24 @@ class Trajectory(Value):
             figure = getattr(self, name)
             if bound is None:
                 continue
-            if not isinstance(bound, (int, float)) or not bound >= 0:
-                raise InputError(f"check: expected numbers of zero or more, got {bound!r}")
-            if figure > bound:
+            if figure > float(numbers(bound, "check", ())):
                 raise CheckError(f"{name} is {figure:.4g}, expected at most {bound:g}: try a smaller step")
         return self
 
     def summary(self) -> str:
         """Return a few lines: how the run ended, its cost, and how well it conserved what it should."""
         primary, secondary = self.system.names
+        reach = span(self.si.time[-1])
+        if self.si.time[0] > 0:
+            reach = f"rows from {span(self.si.time[0])} to {reach} of a run"
         first, last = self.separation[0], self.separation[-1]
         speed = f", {self.wall_time.value / self.steps * 1e6:.2f} us each" if self.steps else ""
         lines = [
             f"{primary} and {secondary}: {self.status}" + (f": {self.message}" if self.message else ""),
-            f"  {_span(self.si.time[-1])} in {self.steps} steps of {self.step.value:g} s, {len(self)} rows kept; "
+            f"  {reach} in {self.steps} steps of {self.step.value:g} s, {len(self)} rows kept; "
             f"{self.wall_time.value:.2g} s{speed}",
             f"  separation {first.value:.6g} m at the start, {last.value:.6g} m at the end, "
-            f"closest {self.closest_approach.value:.6g} m after {_span(self.closest_approach_time.value)}",
+            f"closest {self.closest_approach.value:.6g} m after {span(self.closest_approach_time.value)}",
             f"  largest errors: energy {self.max_relative_energy_error:.4e} of |E0| "
             f"({self.max_energy_error_over_potential:.2e} of |U0|), "
             f"angular momentum {self.max_relative_angular_momentum_error:.1e}, "
@@ -414,11 +418,3 @@ def _floats(datasets: dict[str, Any]) -> TrajectoryFloats:
     }
     arrays = {name: np.asarray(datasets[name], dtype=np.float64) for name in shapes}
     return TrajectoryFloats(*(checked(arrays[name], name, shape) for name, shape in shapes.items()))
-
-
-def _span(seconds: float) -> str:
-    """Return a time in the unit that reads best."""
-    for unit, size in (("d", 86400.0), ("h", 3600.0)):
-        if abs(seconds) >= 2 * size:
-            return f"{seconds / size:.6g} {unit}"
-    return f"{seconds:.6g} s"

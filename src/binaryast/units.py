@@ -154,7 +154,7 @@ def numbers(value: Any, name: str, shape: tuple[int, ...]) -> Floats:
         array = array.astype(np.float64)
     except (TypeError, ValueError, RecursionError):
         expected = "a number" if shape == () else f"an array of numbers of shape {shape}"
-        raise InputError(f"{name}: expected {expected}, got {brief(value)}") from None
+        raise InputError(f"{name}: expected {expected}, got {brief(repr(value))}") from None
     return checked(array, name, shape)
 
 
@@ -185,3 +185,11 @@ def parse(text: str, name: str, example: str = "1 m") -> Quantity:
 def quantity(floats: Any, unit: str) -> Quantity:
     """Return floats in SI as a quantity, without a copy."""
     return np.asarray(floats) << u.Unit(unit)
+
+
+def span(seconds: float) -> str:
+    """Return a time in the unit that reads best."""
+    for unit, size in (("d", 86400.0), ("h", 3600.0)):
+        if abs(seconds) >= 2 * size:
+            return f"{seconds / size:.6g} {unit}"
+    return f"{seconds:.6g} s"

@@ -22,8 +22,9 @@ class Value:
     def _set(self, **attributes: Any) -> None:
         """Set attributes during construction; arrays become read-only."""
         for name, value in attributes.items():
-            if isinstance(value, np.ndarray):
-                value.flags.writeable = False
+            for array in value if isinstance(value, tuple) else (value,):
+                if isinstance(array, np.ndarray):
+                    array.flags.writeable = False
             object.__setattr__(self, name, value)
 
 

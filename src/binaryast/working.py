@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from binaryast.kernels import layout
 from binaryast.kernels.contact import HEADER, SPACING
 from binaryast.kernels.lgvi import prepare
+from binaryast.kernels.so3 import quaternion_to_matrix
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.units import Floats
@@ -102,10 +103,16 @@ def from_rows(system: System, rows: Floats, time: Floats, origin: Barycentre) ->
     return Motion(
         position=np.stack([moving - one * x, moving + two * x], axis=1),
         velocity=np.stack([origin.velocity - one * v, origin.velocity + two * v], axis=1),
-        attitude=Rotation.from_quat(quaternions.reshape(-1, 4)).as_matrix().reshape(-1, 2, 3, 3),
+        attitude=_matrices(quaternions),
         spin=momenta / np.array([body.si.moments for body in system.bodies]),
         potential_energy=rows[:, layout.POTENTIAL].copy(),
     )
+
+
+def _matrices(quaternions: Floats) -> Floats:
+    """Return matrices (..., 3, 3) by the formula of the kernels, which shows a length that is not 1."""
+    elements = quaternion_to_matrix.py_func(tuple(np.moveaxis(quaternions, -1, 0)))  # type: ignore[attr-defined]
+    return np.stack(elements, axis=-1).reshape(*quaternions.shape[:-1], 3, 3)
 
 
 def _shares(system: System) -> Floats:

@@ -90,13 +90,21 @@ def test_gradient_and_moment_are_derivatives_of_the_energy(system: ba.System) ->
             assert turn == pytest.approx(gravity.moment.value[i], abs=1e-10 * force * 1500)
 
 
-def test_nothing_changes_when_all_is_turned(system: ba.System) -> None:
-    """U depends on X and R alone, so a turn of the primary's axes changes what it must and nothing else."""
+@pytest.mark.parametrize("name", ["SecondDegree", "PointPairs dumbbells"])
+@pytest.mark.parametrize("signs", [(1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
+def test_half_a_turn_about_a_principal_axis_changes_nothing(name: str, signs: tuple) -> None:
+    """These bodies look the same after it: once the primary is turned, once the secondary."""
+    system, d = MODELS[name](), np.diag(signs).astype(float)
     for x, r in configurations(5):
-        gravity = system.mutual_gravity(x * u.m, r)
-        total = gravity.torque_on_primary + gravity.torque_on_secondary
-        lever = np.cross(x, gravity.force_on_secondary.value)
-        np.testing.assert_allclose(total.value + lever, 0, atol=1e-12 * np.linalg.norm(lever) + 1e-9)
+        one = system.mutual_gravity(x * u.m, r)
+        scale = np.linalg.norm(one.gradient.value)
+        for turned, back in (
+            (system.mutual_gravity(d @ x * u.m, d @ r), d),
+            (system.mutual_gravity(x * u.m, r @ d), np.eye(3)),
+        ):
+            assert turned.energy.value == pytest.approx(one.energy.value, rel=1e-14)
+            np.testing.assert_allclose(back @ turned.gradient.value, one.gradient.value, atol=1e-13 * scale)
+            np.testing.assert_allclose(back @ turned.moment.value, one.moment.value, atol=1e-13 * scale * 1500)
 
 
 @pytest.mark.parametrize("name", SWAPPABLE)

@@ -48,6 +48,17 @@ def test_a_run_cut_in_two_is_the_same_run(method: type[Integrator], tumbling: tu
     assert attitude_angle(second.attitude[-1], whole.attitude[-1]) < 1e-11
 
 
+def test_time_turned_round_leads_back(method: type[Integrator], tumbling: tuple[ba.System, ba.State]) -> None:
+    system, state = tumbling
+    end = run(tumbling, method(step=20 * u.s))[-1]
+    turned = ba.State(end.position, -end.velocity, end.attitude, -end.spin)
+    back = run((system, turned), method(step=20 * u.s))[-1]
+    assert np.abs(back.position - state.position).max() < 1e-9 * u.m
+    assert np.abs(back.velocity + state.velocity).max() < 1e-12 * u.m / u.s
+    assert attitude_angle(back.attitude, state.attitude) < 1e-11
+    np.testing.assert_allclose(-back.spin.value, state.spin.value, atol=1e-14)
+
+
 def test_the_same_run_twice_is_the_same_bits(method: type[Integrator], tumbling: tuple[ba.System, ba.State]) -> None:
     one, two = (run(tumbling, method(step=20 * u.s)) for _ in range(2))
     for left, right in zip(one.si, two.si, strict=True):
