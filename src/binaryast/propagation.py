@@ -4,6 +4,7 @@ import platform
 import time
 import warnings
 from datetime import UTC, datetime
+from functools import cache
 from importlib.metadata import version
 from math import pi
 from typing import Any
@@ -324,6 +325,12 @@ def _over(error: float, size: float) -> float:
 
 def provenance() -> dict[str, str]:
     """Return what is needed to repeat a run: versions, sources, machine, date, and G."""
+    return _origin() | {"date": datetime.now(UTC).isoformat(timespec="seconds")}
+
+
+@cache
+def _origin() -> dict[str, str]:
+    """Return what does not change in a process: looking it up takes longer than a short run."""
     return {
         "binaryast": constants.VERSION,
         "kernels": source_hash(),
@@ -331,6 +338,5 @@ def provenance() -> dict[str, str]:
         **{name: version(name) for name in ("numpy", "scipy", "numba", "astropy", "h5py")},
         "machine": f"{platform.machine()} {platform.system()}",
         "host": platform.node(),
-        "date": datetime.now(UTC).isoformat(timespec="seconds"),
         "G": repr(constants.G),
     }

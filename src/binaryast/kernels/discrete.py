@@ -23,21 +23,21 @@ def derivatives(potential: PairPotential, p: Array, X: Array, R: Array) -> tuple
 
 _HAMILTONIAN_RELATIVE = types.int64(
     types.FunctionType(PAIR_POTENTIAL),
-    ARRAY,
-    types.float64,
-    types.float64,
-    ROWS,
-    ROWS,
-    types.float64,
-    types.int64,
-    ARRAY,
-    ARRAY,
-    ARRAY,
-    ARRAY,
-    ROWS,
-    ARRAY,
-    ARRAY,
-    ROWS,
+    ARRAY,  # p
+    types.float64,  # m1
+    types.float64,  # m2
+    ROWS,  # J1
+    ROWS,  # J2
+    types.float64,  # h
+    types.int64,  # steps
+    ARRAY,  # X
+    ARRAY,  # Gamma
+    ARRAY,  # Pi
+    ARRAY,  # Pi2
+    ROWS,  # R
+    ARRAY,  # x2
+    ARRAY,  # gamma2
+    ROWS,  # R2
 )
 
 

@@ -26,15 +26,15 @@ _LOOP = types.int64(
     types.FunctionType(MEASURE),
     types.FunctionType(TOUCH),
     types.FunctionType(PAIR_POTENTIAL),
-    ARRAY,
-    ARRAY,
-    ARRAY,
-    ARRAY,
-    ARRAY,
-    types.float64,
-    types.int64,
-    types.int64,
-    ROWS,
+    ARRAY,  # parameters
+    ARRAY,  # constants
+    ARRAY,  # surfaces
+    ARRAY,  # state
+    ARRAY,  # watch
+    types.float64,  # h
+    types.int64,  # count
+    types.int64,  # stride
+    ROWS,  # rows
 )
 
 
