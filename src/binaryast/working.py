@@ -112,7 +112,7 @@ def from_rows(system: System, rows: Floats, time: Floats, origin: Barycentre) ->
 def _matrices(quaternions: Floats) -> Floats:
     """Return matrices (..., 3, 3) by the formula of the kernels, which shows a length that is not 1."""
     elements = quaternion_to_matrix.py_func(tuple(np.moveaxis(quaternions, -1, 0)))  # type: ignore[attr-defined]
-    return np.stack(elements, axis=-1).reshape(*quaternions.shape[:-1], 3, 3)
+    return np.asarray(np.stack(elements, axis=-1).reshape(*quaternions.shape[:-1], 3, 3))
 
 
 def _shares(system: System) -> Floats:
