@@ -32,10 +32,11 @@ RUN = ".h5"  # the suffix of a run
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; return the exit status."""
     arguments = sys.argv[1:] if arguments is None else list(arguments)
-    warnings.showwarning = _show_warning
     try:
         options = parser().parse_args(_joined(arguments))
-        status: int = options.command(options)
+        with warnings.catch_warnings():
+            warnings.showwarning = _show_warning
+            status: int = options.command(options)
         if sys.stdout is not None:
             sys.stdout.flush()
         return status
