@@ -5,11 +5,13 @@ from binaryast.kernels.jit import Quaternion, Vector, jit
 
 @jit()
 def add(total: float, remainder: float, increment: float) -> tuple[float, float]:
-    """Return total + increment, and the exact remainder of that sum (Knuth's two-sum)."""
+    """Return total + increment, and what rounding took from that sum (Kahan).
+
+    The remainder is exact where the total is the larger, and else as small as the increment's own rounding.
+    """
     term = increment + remainder
     result = total + term
-    virtual = result - total
-    return result, (total - (result - virtual)) + (term - virtual)
+    return result, (total - result) + term
 
 
 @jit()
