@@ -231,6 +231,25 @@ def test_a_folder_that_cannot_be_written(folder: Path, capsys: pytest.CaptureFix
     assert "nothing can be written" in capsys.readouterr().err
 
 
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="there is no folder that nobody may write")
+def test_a_folder_that_nobody_can_write(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    assert cli.main(["run", "didymos", "--duration", "1d", "-o", "/proc/run.h5"]) == 2
+    captured = capsys.readouterr()
+    assert "nothing can be written in /proc" in captured.err
+    assert captured.err.count("\n") == 1
+    assert files(folder) == []
+
+
+@pytest.mark.filterwarnings("always")
+def test_a_run_that_fails_says_so_and_keeps_what_there_was(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    arguments = ["run", "dumbbells", "--duration", "15s", "--step", "0.105s", "--no-picture"]
+    assert cli.main(arguments) == cli.FAILED
+    error = capsys.readouterr().err
+    assert "warning: a step of" in error
+    assert "error: step: body" in error
+    assert ba.Trajectory.read("dumbbells.h5").status == "failed"
+
+
 def test_a_folder_that_refuses_to_be_written(
     folder: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
 ) -> None:

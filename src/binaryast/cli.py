@@ -202,19 +202,19 @@ def _run(options: argparse.Namespace) -> int:
     default = f"{stem}-continued.h5" if continued else f"{stem}.h5"
     output = Path(default if options.output is None else options.output)
     picture = None if options.no_picture else Path(output.parent, f"{output.stem}.png")
-    storage.refuse(output, force=options.force)
+    for path in (output, picture):
+        if path is not None:
+            storage.refuse(path, force=options.force)
     if output.suffix.lower() != RUN:
         raise InputError(f"--output: {output}: the file of a run is HDF5: give a name that ends in .h5")
-    duration, step, save_every = (
-        _time(getattr(options, name), f"--{name.replace('_', '-')}") for name in ("duration", "step", "save_every")
-    )
-    system, state, integrator, duration, save_every = _start(options.system, duration, step, save_every, options.degree)
-    if picture is not None:
-        storage.refuse(picture, force=options.force)
+    system, state, integrator, duration, save_every = _start(options)
     run = _propagate(system, state, integrator, duration, save_every, progress=not options.json)
     run.write(output, force=options.force)
-    drawn = picture is None or _draw(run, picture, output, force=options.force)
-    _report(run, output, picture if drawn else None, as_json=options.json)
+    code = 0 if picture is None else _draw(run, picture, output, force=options.force)
+    _report(run, output, None if code else picture, as_json=options.json)
+    if run.status == "failed":
+        print(f"binaryast: error: {run.message}; what was computed is in {output}", file=sys.stderr)
+        return FAILED
     if run.status == "interrupted":
         left = duration.to_value("s") - run.si.time[-1]
         print(
@@ -223,13 +223,12 @@ def _run(options: argparse.Namespace) -> int:
             + (f" --save-every {options.save_every}" if options.save_every else ""),
             file=sys.stderr,
         )
-    if not drawn:
         return INTERRUPTED
-    return {"failed": FAILED, "interrupted": INTERRUPTED}.get(run.status, 0)
+    return code
 
 
-def _draw(run: "Trajectory", picture: Path, output: Path, *, force: bool) -> bool:
-    """Draw a run that is safely in its file; whether the picture is there."""
+def _draw(run: "Trajectory", picture: Path, output: Path, *, force: bool) -> int:
+    """Draw a run that is safely in its file; the exit status, 0 where the picture is there."""
     from binaryast import plotting
 
     try:
@@ -241,8 +240,8 @@ def _draw(run: "Trajectory", picture: Path, output: Path, *, force: bool) -> boo
             f"draw it with: binaryast plot {output}",
             file=sys.stderr,
         )
-        return False
-    return True
+        return INTERRUPTED if isinstance(error, KeyboardInterrupt) else FAILED
+    return 0
 
 
 def _time(text: str | None, option: str) -> Any:
@@ -252,28 +251,31 @@ def _time(text: str | None, option: str) -> Any:
     return None if text is None else quantity(to_si(parse(text, option, "40 s"), "s", option, sign="positive"), "s")
 
 
-def _start(
-    system: str, duration: Any, step: Any, save_every: Any, degree: int | None
-) -> tuple["System", "State", "Integrator", Any, Any]:
+def _start(options: argparse.Namespace) -> tuple["System", "State", "Integrator", Any, Any]:
     """Return what to run: a scenario or the end of an earlier run, with the options in the place of its own values."""
     from binaryast import gravity
     from binaryast.integrators import LGVI
 
-    if Path(system).suffix.lower() == RUN:
+    duration, step, save_every = (
+        _time(getattr(options, name), f"--{name.replace('_', '-')}") for name in ("duration", "step", "save_every")
+    )
+    if Path(options.system).suffix.lower() == RUN:
         from binaryast.trajectory import Trajectory
 
-        earlier = Trajectory.read(system)
+        earlier = Trajectory.read(options.system)
         if duration is None:
-            raise InputError(f"--duration: say how long to go on from the end of {system}, such as --duration 60d")
+            raise InputError(f"--duration: say how long to go on from the end of {options.system}, such as 60d")
         pair, start, integrator = earlier.system, earlier[-1], earlier.integrator
     else:
-        entry = _scenario(system)
+        entry = _scenario(options.system)
         pair, start, integrator = entry.system, entry.state, entry.integrator
         duration = entry.duration if duration is None else duration
         save_every = entry.save_every if save_every is None else save_every
-    if degree is not None:
-        pair = replace(pair, gravity=gravity.PointMass() if degree == 0 else gravity.SecondDegree())
-    return pair, start, integrator if step is None else LGVI(step), duration, save_every
+    if options.degree is not None:
+        pair = replace(pair, gravity=gravity.PointMass() if options.degree == 0 else gravity.SecondDegree())
+    if step is not None:
+        integrator = LGVI(step, order=options.order)
+    return pair, start, integrator, duration, save_every
 
 
 def _say_if_cold() -> None:

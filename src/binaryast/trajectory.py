@@ -73,7 +73,8 @@ class Trajectory(Value):
     status : str
         ``completed``, ``contact``, ``interrupted`` or ``failed``; ``message`` says more.
     steps, step, wall_time : int, Quantity, Quantity
-        Steps taken, the step used (the largest one up to the integrator's that divides the run), and the time it took.
+        Steps taken; the step used, the largest one up to the integrator's that divides ``save_every``, or the run where
+        none is given (a last stretch that ``save_every`` leaves has its own, smaller one); and the time it took.
     max_relative_energy_error, max_energy_error, max_energy_error_over_potential : float, Quantity, float
         Largest |E - E0| over every step: over |E0|, itself, and over |U0|. Spin energy hides the orbit in the first.
     max_relative_angular_momentum_error, max_relative_linear_momentum_error, max_rotation_error : float
@@ -293,18 +294,14 @@ class Trajectory(Value):
         columns: dict[str, Any] = {"time": self.time}
         for i, name in enumerate(self.system.names):
             quaternion = Rotation.from_matrix(self.si.attitude[:, i].copy()).as_quat()
-            for j, axis in enumerate("xyz"):
-                columns[f"{name}.{axis}"] = self.position[:, i, j]
-                columns[f"{name}.v{axis}"] = self.velocity[:, i, j]
-                columns[f"{name}.spin_{axis}"] = self.spin[:, i, j]
-            for j, axis in enumerate("xyzw"):
-                columns[f"{name}.q{axis}"] = quaternion[:, j]
-        order = ["time"] + [
-            f"{name}.{part}"
-            for name in self.system.names
-            for part in ("x", "y", "z", "vx", "vy", "vz", "qx", "qy", "qz", "qw", "spin_x", "spin_y", "spin_z")
-        ]
-        table = QTable({name: columns[name] for name in order})
+            for parts, values in (
+                (("x", "y", "z"), self.position[:, i]),
+                (("vx", "vy", "vz"), self.velocity[:, i]),
+                (("qx", "qy", "qz", "qw"), quaternion),
+                (("spin_x", "spin_y", "spin_z"), self.spin[:, i]),
+            ):
+                columns |= {f"{name}.{part}": values[:, j] for j, part in enumerate(parts)}
+        table = QTable(columns)
         table["energy"] = self.energy
         table.meta = {"frame": self.frame, "status": self.status, **self.provenance}
         if self.epoch is not None:

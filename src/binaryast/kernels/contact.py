@@ -16,7 +16,6 @@ from binaryast.kernels.so3 import dot, relative_attitude, rotate, rotate_back
 # zz of its matrix, in the body's frame.
 SPACING = 3
 HEADER = 4
-MOST_PLACES = 1000
 PIECE = 9
 GOLDEN = 0.6180339887498949
 LOOKS = 40  # the golden section is then 4e-9 wide
@@ -101,15 +100,26 @@ def placed_touches(x: Vector, r: Matrix, surfaces: Array) -> bool:
 def pair_touches(state: Array, surfaces: Array, x: float, y: float, z: float) -> bool:
     """Whether the pair touches on the straight way from the position (x, y, z) before a step to that of the state.
 
-    The way is looked at in places no further apart than half the smallest semi-axis, with the attitudes of its end.
+    The part of the way within reach is looked at in places no further apart than half the
+    smallest semi-axis, and at its end, with the attitudes of the end of the step.
     """
-    r2 = matrix_at(state, ATTITUDE_2)
-    r = relative_attitude(r2, matrix_at(state, ATTITUDE_1))
     after = vector_at(state, POSITION)
     way = (after[0] - x, after[1] - y, after[2] - z)
-    places = min(MOST_PLACES, 1 + int(sqrt(dot(way, way)) / surfaces[SPACING]))
+    square = dot(way, way)
+    closest = -dot((x, y, z), way) / square if square > 0.0 else 1.0  # of the whole straight line
+    point = (x + closest * way[0], y + closest * way[1], z + closest * way[2])
+    inside = surfaces[0] * surfaces[0] - dot(point, point)
+    if inside <= 0.0:
+        return False
+    half = sqrt(inside / square) if square > 0.0 else 0.0
+    first, last = max(0.0, closest - half), min(1.0, closest + half)
+    if first > last:
+        return False
+    r2 = matrix_at(state, ATTITUDE_2)
+    r = relative_attitude(r2, matrix_at(state, ATTITUDE_1))
+    places = 1 + int((last - first) * sqrt(square) / surfaces[SPACING])
     for place in range(1, places + 1):
-        s = place / places
+        s = first + (last - first) * place / places
         if placed_touches(rotate_back(r2, (x + s * way[0], y + s * way[1], z + s * way[2])), r, surfaces):
             return True
     return False

@@ -5,9 +5,8 @@ from math import sqrt
 
 from numba import types
 
-from binaryast.kernels.jit import ARRAY, MEASURE, PAIR_POTENTIAL, ROWS, STEP, TOUCH, Array, PairPotential, Vector, jit
+from binaryast.kernels.jit import ARRAY, MEASURE, PAIR_POTENTIAL, ROWS, STEP, TOUCH, Array, PairPotential, jit
 from binaryast.kernels.layout import POSITION, vector_at
-from binaryast.kernels.so3 import dot
 from binaryast.kernels.status import COMPLETED, CONTACT
 
 # What is watched: the references first, then the extremes over every step.
@@ -38,17 +37,6 @@ _LOOP = types.int64(
 )
 
 
-@jit()
-def near(before: Vector, after: Vector, reach: float) -> bool:
-    """Whether the straight way from before to after comes within reach of the origin."""
-    way = (after[0] - before[0], after[1] - before[1], after[2] - before[2])
-    length = dot(way, way)
-    s = -dot(before, way) / length if length > 0.0 else 0.0
-    s = min(1.0, max(0.0, s))
-    point = (before[0] + s * way[0], before[1] + s * way[1], before[2] + s * way[2])
-    return dot(point, point) < reach * reach
-
-
 @jit(_LOOP)
 def advance(
     step: Callable[..., int],
@@ -68,8 +56,8 @@ def advance(
     """Take ``count`` steps of h.
 
     The number of steps done is kept in ``watch``; after every ``stride``-th of them the start of the state goes into
-    the next of ``rows``, the row of step k being k/stride - 1. Surfaces are looked at only within the distance
-    ``surfaces[0]``, all along the way of a step. Returns a status; the state
+    the next of ``rows``, the row of step k being k/stride - 1. Whether surfaces touch is looked at all along the way of
+    each step. Returns a status; the state
     then is the last good one, or the first with contact.
     """
     for _ in range(count):
@@ -93,6 +81,6 @@ def advance(
             row = done // stride - 1
             for i in range(rows.shape[1]):
                 rows[row, i] = state[i]
-        if near(before, vector_at(state, POSITION), surfaces[0]) and touch(state, surfaces, *before):
+        if touch(state, surfaces, *before):
             return CONTACT
     return COMPLETED
