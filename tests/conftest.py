@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 import binaryast as ba
+from binaryast.outcome import Watch
+from binaryast.working import Working
 
 mpl.use("agg")
 hypothesis.settings.register_profile("patient", deadline=None)  # the first example may have to compile
@@ -58,3 +60,34 @@ def tumbling() -> tuple[ba.System, ba.State]:
 def attitude_angle(one: np.ndarray, two: np.ndarray) -> float:
     """Return the largest angle [rad] between two stacks of attitudes, exact for small ones."""
     return float(np.linalg.norm(one - two, axis=(-2, -1)).max() / np.sqrt(2))
+
+
+def take_steps(w: Working, h: float, count: int) -> np.ndarray:
+    """Take production steps, in place; return what was watched."""
+    watch = Watch()
+    watch.begin(w.measure(w.state, w.constants), 0.0)
+    kernel = ba.LGVI(1 * u.s).kernel(inertial=len(w.before) > 3)
+    rows = np.empty((1, w.row_size))
+    arrays = (w.attraction, w.parameters, w.constants, np.zeros_like(w.surfaces), w.state, w.before, watch.array)
+    status = w.advance(kernel, w.measure, w.touching, *arrays, h, count, count, rows)
+    assert status == 0
+    return watch.array
+
+
+def four_bodies() -> tuple[ba.System, ba.State]:
+    """Four bodies of three kinds, each pair with its own gravity: two ellipsoids, a dumbbell and a point."""
+    bodies = [
+        ba.RigidBody("A", ba.Ellipsoid(420 * u.m, 400 * u.m, 330 * u.m), density=2400 * u.kg / u.m**3),
+        ba.RigidBody("B", ba.Ellipsoid(100 * u.m, 80 * u.m, 60 * u.m), density=2400 * u.kg / u.m**3),
+        ba.RigidBody("rod", ba.Dumbbell(200 * u.m, 30 * u.m), mass=2e9 * u.kg),
+        ba.RigidBody("dust", ba.Point(), mass=1e6 * u.kg),
+    ]
+    gravity = {("rod", "dust"): ba.PointPairs(), ("A", "dust"): ba.PointMass(), "others": ba.SecondDegree()}
+    system = ba.System(bodies, gravity=gravity)
+    orbits = [
+        ba.Orbit(1400 * u.m, 0.05, 15 * u.deg),
+        ba.Orbit(4000 * u.m, 0.1, 30 * u.deg, 40 * u.deg, about="inner"),
+        ba.Orbit(9000 * u.m, 0.2, 100 * u.deg, mean_anomaly=60 * u.deg, about="inner"),
+    ]
+    spins = [[3e-5, -2e-5, 7.5e-4], [-4e-5, 6e-5, 1.5e-4], [1e-5, 5e-5, -9e-5]] * u.rad / u.s
+    return system, ba.State.from_orbits(system, orbits, spins=[*spins, None])

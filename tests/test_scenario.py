@@ -114,7 +114,7 @@ def changed(old: str, new: str) -> str:
         (changed('name = "Didymos"', 'name = "a\\u0000b"'), "printable"),
         ("a = " + 600 * "[" + 600 * "]", "not TOML"),
         (changed('spins = ["2.26 h", "synchronous"]', "spins = [2.26, 11.9]"), r'spins\[0\].*such as "2.26 h"'),
-        ("bodies = 1\nstate = 2\nrun = 3", "bodies: expected two tables"),
+        ("bodies = 1\nstate = 2\nrun = 3", "bodies: expected a table"),
         ("", "bodies is missing"),
         ("[[bodies]\n", "not TOML"),
     ],

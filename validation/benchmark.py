@@ -8,14 +8,13 @@ import statistics
 import time
 from collections.abc import Callable
 
+import astropy.units as u
 import numba
 import numpy as np
 
 import binaryast as ba
 from binaryast import working
-from binaryast.kernels import layout, lgvi, loop
-from binaryast.kernels.contact import pair_touches
-from binaryast.kernels.measure import pair_measure
+from binaryast.outcome import Watch
 
 ROUNDS = 15
 
@@ -41,33 +40,42 @@ def plain_sum(a: np.ndarray, b: np.ndarray, repeats: int) -> float:
     return result
 
 
-def stepper(name: str, h: float, *, save: bool = False) -> Callable[[int], None]:
+def stepper(name: str, h: float, *, save: bool = False, inertial: bool = False) -> Callable[[int], None]:
     """Return a function that takes steps of a catalogue entry, watched and, on request, with every 10th saved."""
     system, state = ba.catalogue.load(name)
-    array = working.to_working(system, state)
-    constants, surfaces = working.constants(system), working.surfaces(system)
-    rows = np.empty((200_000, layout.ROW_SIZE))
+    return steps_of(system, state, h, save=save, inertial=inertial)
+
+
+def steps_of(
+    system: ba.System, state: ba.State, h: float, *, save: bool = False, inertial: bool = False
+) -> Callable[[int], None]:
+    """Return a function that takes watched steps of a system."""
+    w = working.of(system, state, inertial=inertial)
+    kernel = ba.LGVI(h * u.s).kernel(inertial=inertial or len(system.bodies) > 2)
+    start = w.state.copy()
+    rows = np.empty((200_000 if save else 1, w.row_size))
 
     def take(count: int) -> None:
-        current = array.copy()
-        watch = np.zeros(loop.WATCH_SIZE)
-        watch[: loop.ENERGY_ERROR] = pair_measure(current, constants)[: loop.ENERGY_ERROR]
-        watch[loop.CLOSEST] = np.inf
-        loop.advance(
-            lgvi.pair_step,
-            pair_measure,
-            pair_touches,
-            system.gravity.potential,
-            system.parameters,
-            constants,
-            surfaces,
-            current,
-            watch,
+        w.state[:] = start
+        watch = Watch()
+        watch.begin(w.measure(w.state, w.constants), 0.0)
+        status = w.advance(
+            kernel,
+            w.measure,
+            w.touching,
+            w.attraction,
+            w.parameters,
+            w.constants,
+            w.surfaces,
+            w.state,
+            w.before,
+            watch.array,
             h,
             count,
             10 if save else count,
             rows,
         )
+        assert status == 0
 
     return take
 
@@ -83,6 +91,7 @@ def main() -> None:
         "LGVI step, second degree (didymos)": (stepper("didymos", 40.0), 60_000),
         "the same, every 10th step saved": (stepper("didymos", 40.0, save=True), 60_000),
         "LGVI step, 2 x 2 point pairs (dumbbells)": (stepper("dumbbells", 1e-4), 60_000),
+        "LGVI step, second degree, inertial frame": (stepper("didymos", 40.0, inertial=True), 60_000),
     }
     times: dict[str, list[float]] = {name: [] for name in jobs}
     for job, _ in jobs.values():

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, Any
 from binaryast import constants as _constants
 
 if TYPE_CHECKING:
-    from binaryast import analysis, catalogue, constants, errors, plotting, scenario
+    from binaryast import analysis, catalogue, constants, equations, errors, plotting, scenario
     from binaryast.bodies import RigidBody
     from binaryast.errors import BinaryastError
     from binaryast.gravity import PairPotential, PointMass, PointPairs, SecondDegree, pair_potential
-    from binaryast.integrators import LGVI
+    from binaryast.integrators import LGVI, RungeKutta
+    from binaryast.orbits import Orbit
     from binaryast.propagation import propagate
-    from binaryast.shapes import Dumbbell, Ellipsoid, PointCloud, Shape, Sphere
+    from binaryast.shapes import Dumbbell, Ellipsoid, Point, PointCloud, Shape, Sphere
     from binaryast.state import RelativeState, State
     from binaryast.system import MutualGravity, System
     from binaryast.trajectory import Trajectory
@@ -28,12 +29,15 @@ _HOMES = {
     "Ellipsoid": "shapes",
     "LGVI": "integrators",
     "MutualGravity": "system",
+    "Orbit": "orbits",
     "PairPotential": "gravity",
+    "Point": "shapes",
     "PointCloud": "shapes",
     "PointMass": "gravity",
     "PointPairs": "gravity",
     "RelativeState": "state",
     "RigidBody": "bodies",
+    "RungeKutta": "integrators",
     "SecondDegree": "gravity",
     "Shape": "shapes",
     "Sphere": "shapes",
@@ -43,7 +47,7 @@ _HOMES = {
     "pair_potential": "gravity",
     "propagate": "propagation",
 }
-_MODULES = ("analysis", "catalogue", "constants", "errors", "plotting", "scenario")
+_MODULES = ("analysis", "catalogue", "constants", "equations", "errors", "plotting", "scenario")
 
 __all__ = [
     "LGVI",
@@ -51,12 +55,15 @@ __all__ = [
     "Dumbbell",
     "Ellipsoid",
     "MutualGravity",
+    "Orbit",
     "PairPotential",
+    "Point",
     "PointCloud",
     "PointMass",
     "PointPairs",
     "RelativeState",
     "RigidBody",
+    "RungeKutta",
     "SecondDegree",
     "Shape",
     "Sphere",
@@ -67,6 +74,7 @@ __all__ = [
     "analysis",
     "catalogue",
     "constants",
+    "equations",
     "errors",
     "pair_potential",
     "plotting",

@@ -10,7 +10,7 @@ from astropy.units import Quantity
 
 from binaryast.constants import G
 from binaryast.errors import InputError
-from binaryast.shapes import Shape
+from binaryast.shapes import Point, Shape
 from binaryast.units import LARGEST, Floats, as_quantity, brief, quantity, to_si
 from binaryast.values import Value
 
@@ -110,7 +110,8 @@ class RigidBody(Value):
             raise InputError(f"RigidBody {name}: a mass of {mass_si:g} kg is beyond what can be computed with")
         matrix = shape.specific_inertia * mass_si if inertia is None else self._given_inertia(inertia)
         moments, turn = principal_axes(matrix, f"RigidBody {name}: inertia")
-        self._check_moments(moments)
+        if not isinstance(shape, Point) or inertia is not None:
+            self._check_moments(moments)
         moments.flags.writeable = False
         self._set(
             mass=quantity(mass_si, "kg"),
@@ -121,6 +122,11 @@ class RigidBody(Value):
             offset=quantity(shape.centre, "m"),
             si=BodyFloats(mass_si, gm_si, moments),
         )
+
+    @property
+    def is_point(self) -> bool:
+        """Whether it has no attitude: a `binaryast.Point` without inertia."""
+        return not np.any(self.si.moments)
 
     def arguments(self) -> dict[str, Any]:
         """Return the arguments that make this body again, as they were given."""
@@ -160,7 +166,7 @@ class RigidBody(Value):
         if moments.min() <= 1e-12 * largest:
             raise InputError(
                 f"{where}: principal moments {shown} kg m2 must all be positive: a point or a line of points has none "
-                "about itself; give inertia="
+                "about itself; give inertia=, or the shape ba.Point()"
             )
         if 2 * largest > moments.sum() * (1 + 1e-9):
             raise InputError(

@@ -5,6 +5,7 @@ Results go to standard output, everything else to standard error; an error is on
 """
 
 import argparse
+import contextlib
 import json
 import os
 import re
@@ -112,8 +113,9 @@ def parser() -> argparse.ArgumentParser:
     running.add_argument("--step", metavar="TIME", help="largest step, such as 40s")
     running.add_argument("--save-every", metavar="TIME", help="time between saved rows, such as 10min")
     running.add_argument("--degree", type=int, choices=(0, 2), help="degree of the mutual gravity: 0 point masses, 2")
-    running.add_argument("--integrator", choices=("LGVI",), default="LGVI", help="method (default: LGVI)")
+    running.add_argument("--integrator", choices=("LGVI", "RungeKutta"), default="LGVI", help="method (default: LGVI)")
     running.add_argument("--order", type=int, choices=(2,), default=2, help="order of the method (default: 2)")
+    running.add_argument("--frame", choices=("relative", "inertial"), help="of the variables")
     _file(running.add_argument("-o", "--output", metavar="FILE.h5", help="where to write (default: NAME.h5 here)"))
     running.add_argument("--no-picture", action="store_true", help="write no picture beside the file")
     running.add_argument("--force", action="store_true", help="replace files that exist")
@@ -173,6 +175,8 @@ def _list(_: argparse.Namespace) -> int:
 
 
 def _show(options: argparse.Namespace) -> int:
+    import numpy as np
+
     from binaryast.units import span
 
     entry = _scenario(options.system)
@@ -180,13 +184,16 @@ def _show(options: argparse.Namespace) -> int:
         print(entry.text, end="")
         return 0
     print(f"{entry.name}: {entry.title}")
-    for role, body in zip(("primary", "secondary"), entry.system.bodies, strict=True):
+    others = "secondary" if len(entry.system.bodies) == 2 else f"about {entry.system.names[0]}"
+    for i, body in enumerate(entry.system.bodies):
+        role = others if i else "primary"
         moments = ", ".join(f"{moment:.6g}" for moment in body.si.moments)
         density = "" if body.density is None else f", {body.density.value:.5g} kg/m3"
         print(f"  {body.name} ({role}): {body.shape!r}".replace("<Quantity ", "").replace(">", ""))
         print(f"    {body.si.mass:.6g} kg, GM {body.si.gm:.8g} m3/s2{density}; moments {moments} kg m2")
     print(f"  gravity: {entry.system.gravity!r}")
-    print(f"  start: separation {entry.state.separation.value:.8g} m, axes {entry.state.frame}")
+    distances = np.linalg.norm(entry.state.si.position[1:] - entry.state.si.position[0], axis=1)
+    print(f"  start: separation {', '.join(f'{d:.8g}' for d in distances)} m, axes {entry.state.frame}")
     print(f"  by default: {span(entry.duration.value)} in steps of {entry.integrator.step.value:g} s")
     for source in entry.sources:
         more = "".join(f"; {key}: {source[key]}" for key in ("uncertainty", "note") if key in source)
@@ -254,7 +261,7 @@ def _time(text: str | None, option: str) -> Any:
 def _start(options: argparse.Namespace) -> tuple["System", "State", "Integrator", Any, Any]:
     """Return what to run: a scenario or the end of an earlier run, with the options in the place of its own values."""
     from binaryast import gravity
-    from binaryast.integrators import LGVI
+    from binaryast.integrators import LGVI, RungeKutta, Stepping
 
     duration, step, save_every = (
         _time(getattr(options, name), f"--{name.replace('_', '-')}") for name in ("duration", "step", "save_every")
@@ -273,8 +280,13 @@ def _start(options: argparse.Namespace) -> tuple["System", "State", "Integrator"
         save_every = entry.save_every if save_every is None else save_every
     if options.degree is not None:
         pair = replace(pair, gravity=gravity.PointMass() if options.degree == 0 else gravity.SecondDegree())
-    if step is not None:
-        integrator = LGVI(step, order=options.order)
+    if options.integrator == "RungeKutta":
+        integrator = RungeKutta(step=step, frame=options.frame)
+    elif step is not None or options.frame is not None:
+        before = integrator.step if isinstance(integrator, Stepping) else None
+        if step is None and before is None:
+            raise InputError("--step: say how large the steps of LGVI may be, such as 40s")
+        integrator = LGVI(before if step is None else step, order=options.order, frame=options.frame)
     return pair, start, integrator, duration, save_every
 
 
@@ -300,15 +312,25 @@ def _propagate(
         )
 
 
+def _periods(run: "Trajectory") -> dict[str, float]:
+    """Return the mean period of each body about the primary [s], as far as the rows tell."""
+    from binaryast import analysis
+
+    periods: dict[str, float] = {}
+    for i, name in enumerate(run.system.names[1:], start=1):
+        if i == 1 and len(run.system.bodies) == 2 and not run.energy_of_orbit[-1] < 0:
+            continue
+        with contextlib.suppress(InputError):  # less than one turn, or too few rows to count turns
+            periods[name] = float(analysis.mutual_period(run, (0, i)).to_value("s"))
+    return periods
+
+
 def _report(run: "Trajectory", output: Path, picture: Path | None, *, as_json: bool) -> None:
     """Print the summary, or one JSON object."""
-    from binaryast import analysis
     from binaryast.trajectory import FIGURES
 
-    try:
-        period = analysis.mutual_period(run).value if run.energy_of_orbit[-1] < 0 else None
-    except InputError:  # less than one turn, or too few rows to count turns
-        period = None
+    periods = _periods(run)
+    pair = len(run.system.bodies) == 2
     if as_json:
         names = ("status", "message", "steps", "step", "wall_time", *FIGURES)
         figures = {name: getattr(run, name) for name in names}
@@ -318,7 +340,8 @@ def _report(run: "Trajectory", output: Path, picture: Path | None, *, as_json: b
             "integrator": repr(run.integrator),
             "rows": len(run),
             "duration": float(run.si.time[-1]),
-            "mutual_period": None if period is None else period * 3600,
+            "mutual_period": periods.get(run.system.names[1]) if pair else None,
+            "periods": periods,
             "file": str(output),
             "picture": None if picture is None else str(picture),
             "provenance": run.provenance,
@@ -326,8 +349,8 @@ def _report(run: "Trajectory", output: Path, picture: Path | None, *, as_json: b
         print(json.dumps(result, allow_nan=False, default=float))
         return
     print(run.summary())
-    if period is not None:
-        print(f"  mutual period {period:.8g} h")
+    for name, period in periods.items():
+        print(f"  {'mutual period' if pair else f'period of {name}'} {period / 3600:.8g} h")
     print(f"  written: {output}" + ("" if picture is None else f", {picture}"))
 
 

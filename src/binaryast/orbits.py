@@ -1,6 +1,7 @@
-"""Starting configurations of a pair as plain SI floats: circular orbits in the pair's own field, Keplerian elements."""
+"""Starting configurations as plain SI floats: circular orbits in the pair's own field, Keplerian elements."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
 from typing import Any, NamedTuple
 
@@ -12,12 +13,96 @@ from scipy.spatial.transform import Rotation
 from binaryast.errors import InputError, UnitError
 from binaryast.system import System
 from binaryast.units import Floats, brief, numbers, to_si
+from binaryast.values import Value
 
 PHASES = 24  # of a body that turns freely, in the mean over its turn: exact below that degree
+CENTRES = ("primary", "inner")
+ZERO = Quantity(0.0, u.deg)
+
+
+@dataclass(frozen=True, eq=False)
+class Orbit(Value):
+    """Osculating Keplerian elements of one body, for `binaryast.State.from_orbits`.
+
+    Parameters
+    ----------
+    semi_major_axis : Quantity
+        Of the orbit about its centre (length).
+    eccentricity : float
+        At least 0 and below 1.
+    inclination, longitude_of_ascending_node, argument_of_periapsis : Quantity
+        Orientation of the orbit (angles).
+    true_anomaly, mean_anomaly : Quantity
+        Place on the orbit (angle), at most one of the two; the periapsis by default.
+    about : {"primary", "inner"}
+        What the orbit's centre is: the primary, or the barycentre of all bodies before this one (Jacobi's elements).
+        G times the masses of the centre and of the body is what attracts.
+
+    Raises
+    ------
+    InputError
+        For an eccentricity outside of 0 <= e < 1, both anomalies, or another centre.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> orbit = ba.Orbit(semi_major_axis=3.8 * u.km, eccentricity=0.016, inclination=165 * u.deg)
+    """
+
+    semi_major_axis: Quantity
+    eccentricity: float = 0.0
+    inclination: Quantity = ZERO
+    longitude_of_ascending_node: Quantity = ZERO
+    argument_of_periapsis: Quantity = ZERO
+    true_anomaly: Quantity | None = None
+    mean_anomaly: Quantity | None = None
+    about: str = "primary"
+
+    def __post_init__(self) -> None:
+        to_si(self.semi_major_axis, "m", "semi_major_axis", sign="positive")
+        e = float(numbers(self.eccentricity, "eccentricity", ()))
+        if not 0 <= e < 1:
+            raise InputError(
+                f"eccentricity: expected 0 <= e < 1, got {e:g}; give an unbound orbit by its vectors to ba.State"
+            )
+        for name in ("inclination", "longitude_of_ascending_node", "argument_of_periapsis"):
+            to_si(getattr(self, name), "rad", name)
+        if self.true_anomaly is not None and self.mean_anomaly is not None:
+            raise InputError("give at most one of true_anomaly= and mean_anomaly=")
+        for name in ("true_anomaly", "mean_anomaly"):
+            if getattr(self, name) is not None:
+                to_si(getattr(self, name), "rad", name)
+        if self.about not in CENTRES:
+            raise InputError(f"about={self.about!r}: expected one of {', '.join(CENTRES)}")
+
+    def rate(self, gm: float) -> float:
+        """Return the mean motion [rad/s] about a centre, ``gm`` being G times both masses."""
+        return sqrt(gm / float(self.semi_major_axis.to_value(u.m)) ** 3)
+
+    def place(self, gm: float, reference: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return position (3,) and velocity (3,) about the centre, and axes (3, 3) along position, motion and pole.
+
+        ``reference`` (3, 3) has in its columns the axes from which the angles are counted.
+        """
+        a, e = float(self.semi_major_axis.to_value(u.m)), float(self.eccentricity)
+        i, node, apse = (
+            float(angle.to_value(u.rad))
+            for angle in (self.inclination, self.longitude_of_ascending_node, self.argument_of_periapsis)
+        )
+        anomaly = 0.0 if self.true_anomaly is None else float(self.true_anomaly.to_value(u.rad))
+        if self.mean_anomaly is not None:
+            anomaly = _true_anomaly(float(self.mean_anomaly.to_value(u.rad)), e)
+        plane = reference @ Rotation.from_euler("ZXZ", [node, i, apse]).as_matrix()
+        axes = plane @ Rotation.from_euler("z", anomaly).as_matrix()
+        semi_latus = a * (1 - e * e)
+        position = semi_latus / (1 + e * cos(anomaly)) * axes[:, 0]
+        velocity = plane @ (sqrt(gm / semi_latus) * np.array([-sin(anomaly), e + cos(anomaly), 0.0]))
+        return position, velocity, axes
 
 
 class Motion(NamedTuple):
-    """What a `binaryast.State` is made of, SI, primary first: (2, 3), (2, 3), (2, 3, 3), (2, 3)."""
+    """What a `binaryast.State` is made of, SI, primary first: (n, 3), (n, 3), (n, 3, 3), (n, 3)."""
 
     position: Floats
     velocity: Floats
@@ -31,7 +116,7 @@ def circular_orbit(
     """Return a circular orbit in the pair's own field; see `binaryast.State.circular_orbit`."""
     if (separation is None) == (period is None):
         raise InputError("circular_orbit: give exactly one of separation= and period=")
-    synchronous = [_is_synchronous(spin) for spin in _two(spins)]
+    synchronous = [_is_synchronous(spin) for spin in _one_each(spins, 2, "spins", "one for each body, primary first")]
     if separation is not None:
         r = float(to_si(separation, "m", "separation", sign="positive"))
         rate = sqrt(_square_rate(system, r, synchronous))
@@ -40,7 +125,7 @@ def circular_orbit(
         r = _separation(system, rate, synchronous)
     axes = pole_axes(pole)
     relative = r * axes[:, 0], rate * r * axes[:, 1]
-    return _motion(system, *relative, axes, _spin_vectors(spins, rate))
+    return _motion(system, *relative, axes, _spin_vectors(system, spins, [rate, rate]))
 
 
 def _square_rate(system: System, r: float, synchronous: Sequence[bool]) -> float:
@@ -77,37 +162,53 @@ def _separation(system: System, rate: float, synchronous: Sequence[bool]) -> flo
         ) from None
 
 
-def from_elements(
-    system: System,
-    semi_major_axis: Quantity,
-    eccentricity: float,
-    angles: dict[str, Quantity],
-    true_anomaly: Quantity | None,
-    mean_anomaly: Quantity | None,
-    pole: Any,
-    spins: Sequence[Any],
-) -> Motion:
-    """Return an osculating Keplerian orbit; see `binaryast.State.from_elements`."""
-    a = float(to_si(semi_major_axis, "m", "semi_major_axis", sign="positive"))
-    e = float(numbers(eccentricity, "eccentricity", ()))
-    if not 0 <= e < 1:
-        raise InputError(
-            f"eccentricity: expected 0 <= e < 1, got {e:g}; give an unbound orbit by its vectors to ba.State"
-        )
-    i, node, apse = (float(to_si(value, "rad", name)) for name, value in angles.items())
-    if true_anomaly is not None and mean_anomaly is not None:
-        raise InputError("from_elements: give at most one of true_anomaly= and mean_anomaly=")
-    anomaly = 0.0 if true_anomaly is None else float(to_si(true_anomaly, "rad", "true_anomaly"))
-    if mean_anomaly is not None:
-        anomaly = _true_anomaly(float(to_si(mean_anomaly, "rad", "mean_anomaly")), e)
+def from_elements(system: System, orbit: Orbit, pole: Any, spins: Sequence[Any]) -> Motion:
+    """Return a pair on an osculating Keplerian orbit; see `binaryast.State.from_elements`."""
     gm = system.primary.si.gm + system.secondary.si.gm
-    plane = pole_axes(pole) @ Rotation.from_euler("ZXZ", [node, i, apse]).as_matrix()
-    axes = plane @ Rotation.from_euler("z", anomaly).as_matrix()
-    semi_latus = a * (1 - e * e)
-    speed = sqrt(gm / semi_latus)
-    position = semi_latus / (1 + e * cos(anomaly)) * axes[:, 0]
-    velocity = plane @ (speed * np.array([-sin(anomaly), e + cos(anomaly), 0.0]))
-    return _motion(system, position, velocity, axes, _spin_vectors(spins, sqrt(gm / a**3)))
+    position, velocity, axes = orbit.place(gm, pole_axes(pole))
+    return _motion(system, position, velocity, axes, _spin_vectors(system, spins, [orbit.rate(gm)] * 2))
+
+
+def from_orbits(
+    system: System, orbits: Sequence[Orbit], pole: Any, spins: Sequence[Any], poles: Mapping[str, Any] | None
+) -> Motion:
+    """Return several bodies on osculating Keplerian orbits; see `binaryast.State.from_orbits`."""
+    count = len(system.bodies)
+    _one_each(orbits, count - 1, "orbits", "a ba.Orbit for each body but the primary")
+    for orbit in orbits:
+        if not isinstance(orbit, Orbit):
+            raise InputError(f"orbits: expected ba.Orbit, got {brief(orbit)}")
+    if poles is not None and not isinstance(poles, Mapping):
+        raise InputError(f"poles: expected a table of poles by the names of bodies, got {brief(poles)}")
+    masses = np.array([body.si.mass for body in system.bodies])
+    gms = np.array([body.si.gm for body in system.bodies])
+    reference = pole_axes(pole)
+    position, velocity = np.zeros((count, 3)), np.zeros((count, 3))
+    axes, rates = np.zeros((count, 3, 3)), np.zeros(count)
+    for k, orbit in enumerate(orbits, start=1):
+        inner = slice(0, 1) if orbit.about == "primary" else slice(0, k)
+        gm = float(gms[inner].sum() + gms[k])
+        x, v, axes[k] = orbit.place(gm, reference)
+        shares = masses[inner] / masses[inner].sum()
+        position[k], velocity[k] = shares @ position[inner] + x, shares @ velocity[inner] + v
+        rates[k] = orbit.rate(gm)
+    axes[0], rates[0] = axes[1], rates[1]
+    for name, direction in (poles or {}).items():
+        i = system.index(name)
+        axes[i] = _with_pole(axes[i], pole_axes(direction)[:, 2])
+    shares = masses / masses.sum()
+    spin = _spin_vectors(system, spins, list(rates))
+    return Motion(position - shares @ position, velocity - shares @ velocity, axes, spin)
+
+
+def _with_pole(axes: Floats, z: Floats) -> Floats:
+    """Return axes with another pole, their x as near to the old one as it can be."""
+    x = axes[:, 0] - (axes[:, 0] @ z) * z
+    if np.linalg.norm(x) < 1e-9:  # along the pole: any other axis does
+        x = axes[:, 1] - (axes[:, 1] @ z) * z
+    x = x / np.linalg.norm(x)
+    y = np.cross(z, x)
+    return np.column_stack([x, y / np.linalg.norm(y), z])
 
 
 def _true_anomaly(mean: float, e: float) -> float:
@@ -150,20 +251,26 @@ def is_celestial(pole: Any) -> bool:
     )
 
 
-def _two(spins: Sequence[Any]) -> Sequence[Any]:
-    """Return the spins of the two bodies, or say what is expected."""
-    if not isinstance(spins, (list, tuple)) or len(spins) != 2:
-        raise InputError(f"spins: expected a list of one for each body, primary first, got {brief(spins)}")
-    return spins
+def _one_each(values: Any, count: int, name: str, expected: str) -> Sequence[Any]:
+    """Return a list with one for each body, or say what is expected."""
+    if not isinstance(values, (list, tuple)) or len(values) != count:
+        raise InputError(f"{name}: expected a list of {count}, {expected}, got {brief(values)}")
+    return values
 
 
 def _is_synchronous(spin: Any) -> bool:
     return isinstance(spin, str) and spin == "synchronous"
 
 
-def _spin_vectors(spins: Sequence[Any], rate: float) -> Floats:
-    """Return the spins (2, 3) in the body frames [rad/s]; ``rate`` is that of the orbit."""
-    return np.array([_spin_vector(spin, f"spins[{i}]", rate) for i, spin in enumerate(_two(spins))])
+def _spin_vectors(system: System, spins: Sequence[Any], rates: Sequence[float]) -> Floats:
+    """Return the spins (n, 3) in the body frames [rad/s]; ``rates`` are those of the orbits."""
+    _one_each(spins, len(system.bodies), "spins", "one for each body, primary first")
+    return np.array(
+        [
+            np.zeros(3) if body.is_point and spin is None else _spin_vector(spin, f"spins[{i}]", rates[i])
+            for i, (body, spin) in enumerate(zip(system.bodies, spins, strict=True))
+        ]
+    )
 
 
 def _spin_vector(spin: Any, name: str, rate: float) -> Floats:

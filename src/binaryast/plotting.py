@@ -14,11 +14,11 @@ from matplotlib.patches import Polygon
 from binaryast.analysis import libration_angle, mean_orbit_axes
 from binaryast.errors import InputError
 from binaryast.storage import as_path, refuse, replace_whole
-from binaryast.trajectory import Trajectory
+from binaryast.trajectory import Trajectory, joined
 from binaryast.units import Floats, brief
 
 PRIMARY, SECONDARY, DARK = "#1f4e79", "#c8553d", "#333333"
-COLOURS = (PRIMARY, SECONDARY)
+COLOURS = (PRIMARY, SECONDARY, "#6a994e", "#7b2d8b", "#e0a030", "#2a9d8f", "#8d6b4f", "#888888")
 FORMATS = ("png", "pdf", "svg")
 
 
@@ -29,6 +29,10 @@ def _time(run: Trajectory) -> tuple[Floats, str]:
         if end >= 2 * size:
             return run.si.time / size, unit
     return run.si.time, "s"
+
+
+def _colour(i: int) -> str:
+    return COLOURS[i % len(COLOURS)]
 
 
 def _plain(text: str) -> str:
@@ -60,12 +64,11 @@ def _over_time(ax: Axes, run: Trajectory, label: str, title: str) -> Axes:
 
 
 def orbit(run: Trajectory, ax: Axes | None = None, *, frame: str = "inertial") -> Axes:
-    """Draw the paths of the mass centres in the mean orbit plane, and both bodies at the end.
+    """Draw the paths of the mass centres in the mean orbit plane, and the bodies at the end.
 
     Parameters
     ----------
     run : Trajectory
-        Of a pair.
     ax : Axes, optional
         Where to draw; a new figure by default.
     frame : {"inertial", "primary"}
@@ -90,33 +93,50 @@ def orbit(run: Trajectory, ax: Axes | None = None, *, frame: str = "inertial") -
     """
     ax = _axes(run, ax)
     if frame == "inertial":
-        plane = mean_orbit_axes(run)[:2]
+        plane = _mean_plane(run)
         paths, attitudes = run.si.position, run.si.attitude[-1]
         place, subject = "in the orbit plane, inertial", "Orbit"
     elif frame == "primary":
         plane = np.eye(3)[:2]
-        relative = run.relative
-        paths = np.stack([np.zeros_like(relative.X.value), relative.X.value], axis=1)
-        attitudes = np.array([np.eye(3), relative.R[-1]])
+        to_primary = np.swapaxes(run.si.attitude[:, 0], -1, -2)
+        paths = np.einsum("nij,nbj->nbi", to_primary, run.si.position - run.si.position[:, :1])
+        attitudes = to_primary[-1] @ run.si.attitude[-1]
         place, subject = "in the primary's axes", f"Seen from {_plain(run.system.names[0])}, turning with it"
     else:
         raise InputError(f"orbit: frame={frame!r}: expected 'inertial' or 'primary'")
     size, unit = _length(float(np.abs(paths).max()))
     for i, body in enumerate(run.system.bodies):
         path = paths[:, i] @ plane.T / size
-        ax.plot(*path.T, _style(path), color=COLOURS[i], lw=0.7, ms=1.5, alpha=0.7, label=_plain(body.name))
+        ax.plot(*path.T, _style(path), color=_colour(i), lw=0.7, ms=1.5, alpha=0.7, label=_plain(body.name))
         drawn = False
         for centre, matrix in body.surface:
+            if not np.any(matrix):
+                continue
             corners = _outline(plane @ attitudes[i] @ matrix @ attitudes[i].T @ plane.T)
             middle = path[-1] + plane @ attitudes[i] @ centre / size
-            ax.add_patch(Polygon(middle + corners / size, fc=COLOURS[i], ec=DARK, lw=0.5, alpha=0.9, zorder=3))
+            ax.add_patch(Polygon(middle + corners / size, fc=_colour(i), ec=DARK, lw=0.5, alpha=0.9, zorder=3))
             drawn = True
         if not drawn:
-            ax.plot(*path[-1], "o", color=COLOURS[i])
+            ax.plot(*path[-1], "o", color=_colour(i))
     ax.set(xlabel=f"x [{unit}]  ({place})", ylabel=f"y [{unit}]", title=subject, aspect="equal")
     ax.grid(alpha=0.25)
     ax.legend(loc="upper right", fontsize="small", markerscale=4)
     return ax
+
+
+def _mean_plane(run: Trajectory) -> Floats:
+    """Return two inertial axes (2, 3) in the mean orbit plane; of several bodies, across their orbits' momentum."""
+    if len(run.system.bodies) == 2:
+        return mean_orbit_axes(run)[:2]
+    masses = np.array([body.si.mass for body in run.system.bodies])
+    pole = np.einsum("i,nij->j", masses, np.cross(run.si.position, run.si.velocity))
+    if not np.any(pole):
+        raise InputError("the bodies move on lines: there is no orbit plane")
+    pole = pole / np.linalg.norm(pole)
+    first = run.si.position[0, 1] - run.si.position[0, 0]
+    first = first - (first @ pole) * pole
+    first = first / np.linalg.norm(first)
+    return np.array([first, np.cross(pole, first)])
 
 
 def orbit_from_primary(run: Trajectory, ax: Axes | None = None) -> Axes:
@@ -139,31 +159,52 @@ def _outline(matrix: Floats) -> Floats:
 
 
 def separation(run: Trajectory, ax: Axes | None = None) -> Axes:
-    """Draw the distance of the mass centres against time."""
+    """Draw the distance of the mass centres against time; of several bodies, of each from the primary."""
     ax = _axes(run, ax)
-    size, unit = _length(float(run.separation.value.max()))
-    ax.plot(_time(run)[0], run.separation.value / size, color=DARK, lw=0.8)
-    return _over_time(ax, run, f"separation [{unit}]", "Separation of the mass centres")
+    names = run.system.names
+    distances = [run.distance(0, i).value for i in range(1, len(names))]
+    size, unit = _length(float(np.max(distances)))
+    for i, values in enumerate(distances, start=1):
+        colour = DARK if len(names) == 2 else _colour(i)
+        ax.plot(_time(run)[0], values / size, color=colour, lw=0.8, label=_plain(names[i]))
+    if len(names) == 2:
+        return _over_time(ax, run, f"separation [{unit}]", "Separation of the mass centres")
+    ax.legend(loc="best", fontsize="small")
+    return _over_time(ax, run, f"distance [{unit}]", f"Distance from {_plain(names[0])}")
 
 
 def spins(run: Trajectory, ax: Axes | None = None) -> Axes:
     """Draw each body's spin rate against time: its relative change, or itself where one starts at rest."""
     ax = _axes(run, ax)
     rates = np.linalg.norm(run.si.spin, axis=-1)
-    relative = bool(np.all(rates[0] > 0))
-    for i, name in enumerate(run.system.names):
+    turning = [i for i, body in enumerate(run.system.bodies) if not body.is_point]
+    relative = bool(np.all(rates[0, turning] > 0))
+    for i in turning:
         values = rates[:, i] / rates[0, i] - 1 if relative else rates[:, i]
-        label = _plain(name) + (f": {2 * np.pi / rates[0, i] / 3600:.4g} h at the start" if relative else "")
-        ax.plot(_time(run)[0], values, color=COLOURS[i], lw=0.8, label=label)
+        name = _plain(run.system.names[i])
+        label = name + (f": {2 * np.pi / rates[0, i] / 3600:.4g} h at the start" if relative else "")
+        ax.plot(_time(run)[0], values, color=_colour(i), lw=0.8, label=label)
     ax.legend(loc="best", fontsize="small")
     return _over_time(ax, run, "spin rate / that at the start - 1" if relative else "spin rate [rad/s]", "Spins")
 
 
 def libration(run: Trajectory, ax: Axes | None = None) -> Axes:
-    """Draw the angle from the line of centres to the secondary's x axis against time."""
+    """Draw the angle from the line of centres to a body's x axis; of several, of those that keep it below 90 deg."""
     ax = _axes(run, ax)
-    ax.plot(_time(run)[0], np.degrees(libration_angle(run).value), color=SECONDARY, lw=0.8)
-    return _over_time(ax, run, "libration angle [deg]", f"Libration of {_plain(run.system.names[1])}")
+    names = run.system.names
+    if len(names) == 2:
+        ax.plot(_time(run)[0], np.degrees(libration_angle(run).value), color=SECONDARY, lw=0.8)
+        return _over_time(ax, run, "libration angle [deg]", f"Libration of {_plain(names[1])}")
+    for i in range(1, len(names)):
+        if run.system.bodies[i].is_point:
+            continue
+        angle = np.degrees(libration_angle(run, (0, i)).value)
+        if np.abs(angle).max() < 90:
+            ax.plot(_time(run)[0], angle, color=_colour(i), lw=0.8, label=_plain(names[i]))
+    if not ax.lines:
+        raise InputError(f"no body keeps its x axis towards {names[0]}: there is no libration to draw")
+    ax.legend(loc="best", fontsize="small")
+    return _over_time(ax, run, "libration angle [deg]", f"Libration about {_plain(names[0])}")
 
 
 def energy_exchange(run: Trajectory, ax: Axes | None = None) -> Axes:
@@ -221,7 +262,6 @@ def overview(run: Trajectory, figure: Figure | None = None) -> Figure:
     Parameters
     ----------
     run : Trajectory
-        Of a pair.
     figure : Figure, optional
         An empty one to draw into; a new one of pyplot's by default.
 
@@ -246,7 +286,7 @@ def overview(run: Trajectory, figure: Figure | None = None) -> Figure:
     figure.set_size_inches(18, 8.5)
     axes = figure.subplots(2, 4)
     figure.subplots_adjust(left=0.045, right=0.985, bottom=0.07, top=0.9, wspace=0.36, hspace=0.3)
-    figure.suptitle(_plain(f"{' and '.join(run.system.names)}: {_title(run)}"))
+    figure.suptitle(_plain(f"{joined(run.system.names)}: {_title(run)}"))
     panels: dict[Callable[..., Any], Axes] = {
         orbit: axes[0, 0],
         orbit_from_primary: axes[1, 0],

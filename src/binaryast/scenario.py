@@ -18,17 +18,20 @@ from astropy.units import Quantity
 from binaryast import gravity, shapes
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError, ScenarioError, StorageError, did_you_mean
-from binaryast.integrators import LGVI, Integrator
+from binaryast.integrators import LGVI
+from binaryast.orbits import Orbit
 from binaryast.state import RelativeState, State
 from binaryast.storage import as_path
-from binaryast.system import System
+from binaryast.system import OTHERS, System
 from binaryast.units import brief, parse, quantity, to_si
 from binaryast.values import Value
 
-SHAPES = {kind.__name__: kind for kind in (shapes.Ellipsoid, shapes.Sphere, shapes.Dumbbell, shapes.PointCloud)}
+SHAPES = {
+    kind.__name__: kind for kind in (shapes.Ellipsoid, shapes.Sphere, shapes.Dumbbell, shapes.PointCloud, shapes.Point)
+}
 GRAVITIES = {kind.__name__: kind for kind in (gravity.SecondDegree, gravity.PointPairs, gravity.PointMass)}
-STATES = ("circular_orbit", "from_elements", "inertial", "relative")
-PLAIN = ("weights", "eccentricity", "R", "R2", "attitude", "epoch", "frame")  # arguments that have no unit
+STATES = ("circular_orbit", "from_elements", "from_orbits", "inertial", "relative")
+PLAIN = ("weights", "eccentricity", "about", "R", "R2", "attitude", "epoch", "frame")  # arguments that have no unit
 EXAMPLES = {  # what a text with a unit looks like
     "X": "[1, 0, 0] km",
     "velocity": "[[0, 0, 0], [0, 17, 0]] cm / s",
@@ -36,6 +39,11 @@ EXAMPLES = {  # what a text with a unit looks like
     "spin": "[[0, 0, 1], [0, 0, 1]] deg / min",
     "spins": "2.26 h",
     "pole": "10 deg",
+    "inclination": "10 deg",
+    "longitude_of_ascending_node": "10 deg",
+    "argument_of_periapsis": "10 deg",
+    "true_anomaly": "10 deg",
+    "mean_anomaly": "10 deg",
     "period": "12 h",
     "V": "[0, 1, 0] m / s",
     "V2": "[0, 1, 0] m / s",
@@ -54,7 +62,7 @@ class Scenario(Value):
         The file's stem, and one line.
     system, state : System, State
         The bodies, their gravity and where they start.
-    integrator : Integrator
+    integrator : LGVI
         How to run it.
     duration, save_every : Quantity
         How long, and how often to save; ``save_every`` may be None.
@@ -68,7 +76,7 @@ class Scenario(Value):
     title: str
     system: System
     state: State
-    integrator: Integrator
+    integrator: LGVI
     duration: Quantity
     save_every: Quantity | None
     sources: tuple[dict[str, str], ...] = field(repr=False)
@@ -122,8 +130,9 @@ def _scenario(tables: dict[str, Any], name: str, text: str) -> Scenario:
     _needed(tables, ("bodies", "state", "run"), "")
     bodies = tables["bodies"]
     if not isinstance(bodies, list) or not all(isinstance(body, dict) for body in bodies):
-        raise InputError("bodies: expected two tables [[bodies]], the primary first")
-    system = System([_body(body, f"bodies[{i}]") for i, body in enumerate(bodies)], _gravity(_table(tables, "gravity")))
+        raise InputError("bodies: expected a table [[bodies]] for each body, the primary first")
+    models = _gravity(_table(tables, "gravity"))
+    system = System([_body(body, f"bodies[{i}]") for i, body in enumerate(bodies)], models)
     run = _table(tables, "run")
     _known(run, ("duration", "step", "save_every"), "run.")
     _needed(run, ("duration", "step"), "run.")
@@ -151,10 +160,24 @@ def _body(table: dict[str, Any], where: str) -> RigidBody:
     return RigidBody(table["name"], shape, **quantities)
 
 
-def _gravity(table: dict[str, Any]) -> gravity.Gravity:
-    """Return the model; second degree where the file says nothing."""
-    result: gravity.Gravity = _typed(table or {"type": "SecondDegree"}, GRAVITIES, "gravity")
-    return result
+def _gravity(table: dict[str, Any]) -> Any:
+    """Return the model, second degree where the file says nothing; or models by pairs, the first one for the others."""
+    pairs = table.get("pairs", [])
+    others = {key: value for key, value in table.items() if key != "pairs"} or {"type": "SecondDegree"}
+    model = _typed(others, GRAVITIES, "gravity")
+    if not pairs:
+        return model
+    if not isinstance(pairs, list) or not all(isinstance(pair, dict) for pair in pairs):
+        raise InputError(f"gravity.pairs: expected tables [[gravity.pairs]], got {brief(pairs)}")
+    models: dict[Any, Any] = {OTHERS: model}
+    for i, pair in enumerate(pairs):
+        where = f"gravity.pairs[{i}]"
+        _needed(pair, ("bodies",), f"{where}.")
+        names = pair["bodies"]
+        if not isinstance(names, list) or len(names) != 2 or not all(isinstance(name, str) for name in names):
+            raise InputError(f"{where}.bodies: expected the names of two bodies, got {brief(names)}")
+        models[tuple(names)] = _typed({k: v for k, v in pair.items() if k != "bodies"}, GRAVITIES, where)
+    return models
 
 
 def _typed(table: dict[str, Any], kinds: dict[str, Any], where: str) -> Any:
@@ -170,12 +193,27 @@ def _state(table: dict[str, Any], system: System) -> State:
     arguments = {key: value for key, value in table.items() if key != "type"}
     if "epoch" in arguments:
         arguments["epoch"] = _epoch(arguments["epoch"])
+    if kind == "from_orbits":
+        return _call(State.from_orbits, {"system": system} | _orbits(arguments), arguments, "state")  # type: ignore[no-any-return]
     if kind == "inertial":
         return _call(State, {}, arguments, "state")  # type: ignore[no-any-return]
     if kind == "relative":
         relative: RelativeState = _call(RelativeState, {}, arguments, "state")
         return relative.to_state(system)
     return _call(getattr(State, kind), {"system": system}, arguments, "state")  # type: ignore[no-any-return]
+
+
+def _orbits(arguments: dict[str, Any]) -> dict[str, Any]:
+    """Take the tables [[state.orbits]] and [state.poles] out of the arguments; return what they say."""
+    tables, poles = arguments.pop("orbits", None), arguments.pop("poles", None)
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise InputError("state.orbits: expected a table [[state.orbits]] for each body but the primary")
+    orbits = [_call(Orbit, {}, table, f"state.orbits[{i}]") for i, table in enumerate(tables)]
+    if poles is None:
+        return {"orbits": orbits, "poles": None}
+    if not isinstance(poles, dict):
+        raise InputError(f"state.poles: expected a table of poles by the names of bodies, got {brief(poles)}")
+    return {"orbits": orbits, "poles": {k: _argument(v, "pole", f"state.poles.{k}") for k, v in poles.items()}}
 
 
 def _call(function: Callable[..., Any], ready: dict[str, Any], arguments: dict[str, Any], where: str) -> Any:

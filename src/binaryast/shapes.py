@@ -125,6 +125,30 @@ class Sphere(Shape):
 
 
 @dataclass(frozen=True, eq=False)
+class Point(Shape):
+    """A mass without extent: a body of this shape has a place and a velocity, and no attitude.
+
+    Its attitude in a `binaryast.State` stays as it is given, its spin must be zero. It attracts and is attracted, and
+    a run ends where it enters another body's surface.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> ba.RigidBody("Milani", ba.Point(), mass=12 * u.kg).is_point
+    True
+    """
+
+    def __post_init__(self) -> None:
+        self._set(centre=np.zeros(3), specific_inertia=np.zeros((3, 3)), points=(np.zeros((1, 3)), np.ones(1)))
+
+    @property
+    def pieces(self) -> list[tuple[Floats, Floats]]:
+        """The surface as ellipsoids: one without size."""
+        return [(self.centre, np.zeros(3))]
+
+
+@dataclass(frozen=True, eq=False)
 class Dumbbell(Shape):
     """Two equal homogeneous spheres on a massless rod along x: the body of section 5 of the paper.
 

@@ -1,21 +1,19 @@
 """Where everything is and how it moves at one moment: inertial, or relative as the paper reduces it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-import astropy.units as u
 import numpy as np
 from astropy.time import Time
 from astropy.units import Quantity
 
 from binaryast import orbits
 from binaryast.errors import InputError
+from binaryast.orbits import ZERO, Orbit, from_orbits
 from binaryast.system import System, rotation
 from binaryast.units import Floats, as_quantity, brief, quantity, to_si
 from binaryast.values import Value
-
-ZERO = Quantity(0.0, u.deg)
 
 
 class StateFloats(NamedTuple):
@@ -140,7 +138,7 @@ class State(Value):
         >>> print(start.separation.round(1))
         1183.9 m
         """
-        _check_system(system)
+        _check_system(system, "circular_orbit")
         motion = orbits.circular_orbit(system, separation, period, pole, spins)
         return cls._from_motion(motion, epoch, frame, pole)
 
@@ -203,16 +201,73 @@ class State(Value):
         >>> print(start.separation.to(u.km).round(2))
         623.25 km
         """
-        angles = {
-            "inclination": inclination,
-            "longitude_of_ascending_node": longitude_of_ascending_node,
-            "argument_of_periapsis": argument_of_periapsis,
-        }
-        _check_system(system)
-        motion = orbits.from_elements(
-            system, semi_major_axis, eccentricity, angles, true_anomaly, mean_anomaly, pole, spins
+        _check_system(system, "from_elements")
+        orbit = Orbit(
+            semi_major_axis,
+            eccentricity,
+            inclination,
+            longitude_of_ascending_node,
+            argument_of_periapsis,
+            true_anomaly,
+            mean_anomaly,
         )
-        return cls._from_motion(motion, epoch, frame, pole)
+        return cls._from_motion(orbits.from_elements(system, orbit, pole, spins), epoch, frame, pole)
+
+    @classmethod
+    def from_orbits(
+        cls,
+        system: System,
+        orbits: Sequence[Orbit],
+        *,
+        pole: Any = None,
+        spins: Sequence[Any],
+        poles: Mapping[str, Any] | None = None,
+        epoch: Time | None = None,
+        frame: str | None = None,
+    ) -> "State":
+        """Return any number of bodies on osculating Keplerian orbits, the barycentre at rest in the origin.
+
+        Each body starts with z along its orbit's pole and x from the orbit's centre to it, the primary as the first
+        of the others.
+
+        Parameters
+        ----------
+        system : System
+            Two bodies or more.
+        orbits : sequence of Orbit
+            One for each body but the primary, in the order of the system.
+        pole : array-like or Quantity, optional
+            Of the plane that inclinations are counted from; see `circular_orbit`.
+        spins : sequence
+            As for `circular_orbit`, one for each body; None for a point. ``"synchronous"`` is the mean motion.
+        poles : mapping, optional
+            Of bodies by name, each as ``pole``: such a body starts with z along it instead of its orbit's.
+        epoch, frame
+            As for `circular_orbit`.
+
+        Returns
+        -------
+        State
+
+        Raises
+        ------
+        InputError
+            For another number of orbits or spins than the bodies need, or a pole of no body.
+
+        Examples
+        --------
+        >>> import astropy.units as u
+        >>> import binaryast as ba
+        >>> bodies = [ba.RigidBody(n, ba.Sphere(r * u.m), mass=m * u.kg) for n, r, m in (
+        ...     ("A", 500, 1e12), ("B", 50, 1e9), ("C", 60, 2e9))]
+        >>> start = ba.State.from_orbits(
+        ...     ba.System(bodies), [ba.Orbit(2 * u.km), ba.Orbit(7 * u.km, 0.1, about="inner")],
+        ...     spins=[3 * u.h, "synchronous", "synchronous"])
+        >>> start.position.shape
+        (3, 3)
+        """
+        _check_kind(system)
+        return cls._from_motion(from_orbits(system, orbits, pole, spins, poles), epoch, frame, pole)
 
     @classmethod
     def _from_motion(cls, motion: orbits.Motion, epoch: Time | None, frame: str | None, pole: Any) -> "State":
@@ -228,8 +283,10 @@ class State(Value):
 
     @property
     def separation(self) -> Quantity:
-        """Distance of the secondary from the primary [m]."""
+        """Distance of the mass centres of a pair [m]."""
         position = self.si.position
+        if len(position) > 2:
+            raise InputError(f"separation: of a pair; this state has {len(position)} bodies: see position")
         return quantity(np.linalg.norm(position[1] - position[0]), "m")
 
     def relative(self) -> "RelativeState":
@@ -378,7 +435,14 @@ def _tdb(epoch: Any) -> Time | None:
         raise InputError(f"epoch: {brief(epoch)} has no TDB: {brief(error)}") from None
 
 
-def _check_system(system: Any) -> None:
+def _check_kind(system: Any) -> None:
     """Raise where a system is something else."""
     if not isinstance(system, System):
         raise InputError(f"system: expected a ba.System, got {brief(system)}")
+
+
+def _check_system(system: Any, what: str) -> None:
+    """Raise where a system is something else than a pair."""
+    _check_kind(system)
+    if len(system.bodies) > 2:
+        raise InputError(f"{what}: of a pair; this system has {len(system.bodies)} bodies: use ba.State.from_orbits")

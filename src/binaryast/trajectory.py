@@ -1,6 +1,7 @@
 """The result of a propagation: arrays with time first, what should be conserved and how well, and how it ended."""
 
 import operator
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -63,13 +64,13 @@ class Trajectory(Value):
     spin : Quantity
         Each in its own body's frame (N, n, 3).
     relative : RelativeState
-        X, V, R, Omega, Omega2 of the paper, time first.
+        X, V, R, Omega, Omega2 of the paper, time first; of a pair.
     energy, potential_energy, translational_energy, rotational_energy : Quantity
         About the barycentre (N,) [J].
     linear_momentum, angular_momentum : Quantity
         (N, 3) [kg m/s], and about the barycentre [kg m2/s].
     rotation_error : ndarray
-        Frobenius norm ||I - R^T R||, the larger of both attitudes (N,).
+        Frobenius norm ||I - R^T R||, the largest of all attitudes (N,).
     status : str
         ``completed``, ``contact``, ``interrupted`` or ``failed``; ``message`` says more.
     steps, step, wall_time : int, Quantity, Quantity
@@ -78,10 +79,10 @@ class Trajectory(Value):
     max_relative_energy_error, max_energy_error, max_energy_error_over_potential : float, Quantity, float
         Largest |E - E0| over every step: over |E0|, itself, and over |U0|. Spin energy hides the orbit in the first.
     max_relative_angular_momentum_error, max_relative_linear_momentum_error, max_rotation_error : float
-        Over every step. A pair's linear momentum is kept by construction: its figure, relative to sum m |v|, is the
-        round-off of the saved rows.
+        Over every step. Linear momentum is relative to sum m |v|; in the relative frame it is kept by construction,
+        and its figure is the round-off of the saved rows.
     closest_approach, closest_approach_time : Quantity
-        Smallest distance of the mass centres over every step, and when.
+        Smallest distance of any two mass centres over every step, and when.
     integrator, system, epoch, frame, provenance
         What was run, and on what.
     si : TrajectoryFloats
@@ -164,13 +165,27 @@ class Trajectory(Value):
 
     @cached_property
     def relative(self) -> RelativeState:
-        """The paper's reduced variables (34)-(39), time first."""
+        """The paper's reduced variables (34)-(39) of a pair, time first."""
+        self._only_pair("relative")
         return RelativeState.from_arrays(*self.si[1:5], epoch=self.epoch, frame=self.frame)
 
     @property
     def separation(self) -> Quantity:
-        """Distance of the mass centres (N,)."""
-        return quantity(np.linalg.norm(self.si.position[:, 1] - self.si.position[:, 0], axis=-1), "m")
+        """Distance of the mass centres of a pair (N,)."""
+        self._only_pair("separation")
+        return self.distance(0, 1)
+
+    def distance(self, one: str | int, two: str | int) -> Quantity:
+        """Return the distance of the mass centres of two bodies, given by names or indices (N,)."""
+        i, j = self.system.index(one), self.system.index(two)
+        return quantity(np.linalg.norm(self.si.position[:, j] - self.si.position[:, i], axis=-1), "m")
+
+    def _only_pair(self, what: str) -> None:
+        """Raise where there are several bodies."""
+        if len(self.system.bodies) > 2:
+            raise InputError(
+                f"{what}: of a pair; this run has {len(self.system.bodies)} bodies: see run.distance and run.position"
+            )
 
     @property
     def potential_energy(self) -> Quantity:
@@ -180,12 +195,29 @@ class Trajectory(Value):
     @property
     def translational_energy(self) -> Quantity:
         """Kinetic energy of the mass centres about the barycentre (N,)."""
-        relative = self.si.velocity[:, 1] - self.si.velocity[:, 0]
-        return quantity(0.5 * self.system.reduced_mass * np.sum(relative**2, axis=-1), "J")
+        _, velocity = self._about_barycentre
+        return quantity(0.5 * np.sum(velocity**2, axis=-1) @ self._masses, "J")
+
+    @cached_property
+    def _about_barycentre(self) -> tuple[Floats, Floats]:
+        """Positions and velocities (N, n, 3) relative to the barycentre."""
+        masses = self._masses / self._masses.sum()
+        position, velocity = self.si.position, self.si.velocity
+        if len(masses) == 2:  # by the difference, which keeps digits where the barycentre is far or fast
+            factors = np.array([[-masses[1]], [masses[0]]])
+            return factors * np.diff(position, axis=1), factors * np.diff(velocity, axis=1)
+        return (
+            position - np.einsum("i,nij->nj", masses, position)[:, None],
+            velocity - np.einsum("i,nij->nj", masses, velocity)[:, None],
+        )
+
+    @property
+    def _masses(self) -> Floats:
+        return np.array([body.si.mass for body in self.system.bodies])
 
     @property
     def rotational_energy(self) -> Quantity:
-        """Of both bodies together (N,)."""
+        """Of all bodies together (N,)."""
         moments = np.array([body.si.moments for body in self.system.bodies])
         return quantity(0.5 * np.sum(moments * self.si.spin**2, axis=(-2, -1)), "J")
 
@@ -196,27 +228,25 @@ class Trajectory(Value):
 
     @property
     def energy_of_orbit(self) -> Quantity:
-        """Translational and potential energy (N,): below zero the pair is bound, but for what its spins can give."""
+        """Translational and potential energy (N,): below zero a pair is bound, but for what its spins can give."""
         return self.translational_energy + self.potential_energy
 
     @property
     def linear_momentum(self) -> Quantity:
         """The paper's gamma_T (N, 3)."""
-        masses = np.array([body.si.mass for body in self.system.bodies])
-        return quantity(np.einsum("i,nij->nj", masses, self.si.velocity), "kg m / s")
+        return quantity(np.einsum("i,nij->nj", self._masses, self.si.velocity), "kg m / s")
 
     @property
     def angular_momentum(self) -> Quantity:
         """The paper's pi_T, about the barycentre, inertial (N, 3)."""
         moments = np.array([body.si.moments for body in self.system.bodies])
         spins = np.einsum("nbij,nbj->ni", self.si.attitude, moments * self.si.spin)
-        x = self.si.position[:, 1] - self.si.position[:, 0]
-        v = self.si.velocity[:, 1] - self.si.velocity[:, 0]
-        return quantity(self.system.reduced_mass * np.cross(x, v) + spins, "kg m2 / s")
+        orbits = np.einsum("i,nij->nj", self._masses, np.cross(*self._about_barycentre))
+        return quantity(orbits + spins, "kg m2 / s")
 
     @property
     def rotation_error(self) -> Floats:
-        """||I - R^T R||, the larger of both attitudes (N,)."""
+        """||I - R^T R||, the largest of all attitudes (N,)."""
         r = self.si.attitude
         errors = np.linalg.norm(np.eye(3) - np.swapaxes(r, -1, -2) @ r, axis=(-2, -1))
         return np.asarray(errors.max(axis=1))
@@ -257,24 +287,34 @@ class Trajectory(Value):
 
     def summary(self) -> str:
         """Return a few lines: how the run ended, its cost, and how well it conserved what it should."""
-        primary, secondary = self.system.names
         reach = span(self.si.time[-1])
         if self.si.time[0] > 0:
             reach = f"rows from {span(self.si.time[0])} to {reach} of a run"
-        first, last = self.separation[0], self.separation[-1]
         speed = f", {self.wall_time.value / self.steps * 1e6:.2f} us each" if self.steps else ""
         lines = [
-            f"{primary} and {secondary}: {self.status}" + (f": {self.message}" if self.message else ""),
+            f"{joined(self.system.names)}: {self.status}" + (f": {self.message}" if self.message else ""),
             f"  {reach} in {self.steps} steps of {self.step.value:g} s, {len(self)} rows kept; "
             f"{self.wall_time.value:.2g} s{speed}",
-            f"  separation {first.value:.6g} m at the start, {last.value:.6g} m at the end, "
-            f"closest {self.closest_approach.value:.6g} m after {span(self.closest_approach_time.value)}",
+            *self._distances(),
             f"  largest errors: energy {self.max_relative_energy_error:.4e} of |E0| "
             f"({self.max_energy_error_over_potential:.2e} of |U0|), "
             f"angular momentum {self.max_relative_angular_momentum_error:.1e}, "
             f"rotation {self.max_rotation_error:.1e}",
         ]
         return "\n".join(lines)
+
+    def _distances(self) -> list[str]:
+        """Return what the summary says of distances: of a pair, or of each other body from the primary."""
+        closest = f"closest {self.closest_approach.value:.6g} m after {span(self.closest_approach_time.value)}"
+        names = self.system.names
+        lines = []
+        for i in range(1, len(names)):
+            d = self.distance(0, i).value
+            of = "" if len(names) == 2 else f" of {names[i]} from {names[0]}"
+            lines.append(f"  separation{of} {d[0]:.6g} m at the start, {d[-1]:.6g} m at the end")
+        if len(names) == 2:
+            return [f"{lines[0]}, {closest}"]
+        return [*lines, f"  any two: {closest}"]
 
     def to_table(self) -> "QTable":
         """Return the run as an astropy table: one row a time, a column a number; attitudes as quaternions, scalar last.
@@ -382,7 +422,7 @@ class Trajectory(Value):
             return cls(
                 system=content.values["system"],
                 integrator=content.values["integrator"],
-                si=_floats(content.datasets),
+                si=_floats(content.datasets, len(content.values["system"].bodies)),
                 epoch=content.values.get("epoch"),
                 frame=str(attributes["frame"]),
                 status=str(attributes["status"]),
@@ -402,15 +442,20 @@ class Trajectory(Value):
             raise storage.broken(path, brief(error)) from None
 
 
-def _floats(datasets: dict[str, Any]) -> TrajectoryFloats:
+def joined(names: Sequence[str]) -> str:
+    """Return names as one would say them."""
+    return f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _floats(datasets: dict[str, Any], count: int) -> TrajectoryFloats:
     """Return the arrays of a file, after a look at their shapes and values."""
     rows = len(datasets["time"])
     shapes = {
         "time": (rows,),
-        "position": (rows, 2, 3),
-        "velocity": (rows, 2, 3),
-        "attitude": (rows, 2, 3, 3),
-        "spin": (rows, 2, 3),
+        "position": (rows, count, 3),
+        "velocity": (rows, count, 3),
+        "attitude": (rows, count, 3, 3),
+        "spin": (rows, count, 3),
         "potential_energy": (rows,),
     }
     arrays = {name: np.asarray(datasets[name], dtype=np.float64) for name in shapes}

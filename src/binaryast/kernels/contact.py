@@ -2,20 +2,23 @@
 
 Two ellipsoids with centres d apart and matrices A, B (x.A^-1 x = 1 on the surface) are apart exactly where the
 concave function F(s) = s (1 - s) d.[(1 - s) A + s B]^-1 d exceeds 1 somewhere in 0 < s < 1 (J. Comput. Phys. 58, 409,
-1985); for spheres the first look, at s = a/(a + b), decides.
+1985); for spheres the first look, at s = a/(a + b), decides. A point is an ellipsoid without size.
 """
 
 from math import sqrt
 
-from binaryast.kernels.jit import TOUCH, Array, Matrix, Vector, jit
-from binaryast.kernels.layout import ATTITUDE_1, ATTITUDE_2, POSITION, matrix_at, vector_at
+from binaryast.kernels.arrays import vector_at
+from binaryast.kernels.jit import Array, Matrix, Vector, jit
 from binaryast.kernels.so3 import dot, relative_attitude, rotate, rotate_back
 
-# surfaces: the distance within which to look, the number of pieces of the primary and of the secondary, how far apart
-# the places of a step lie that are looked at, then for each piece its centre and the six elements xx, xy, xz, yy, yz,
-# zz of its matrix, in the body's frame.
-SPACING = 3
-HEADER = 4
+# surfaces: for each body the radius of a sphere about its mass centre that holds it, its smallest semi-axis, where its
+# pieces begin and how many they are; then for each piece its centre and the six elements xx, xy, xz, yy, yz, zz of its
+# matrix, in the body's frame.
+RADIUS = 0
+SMALLEST = 1
+FIRST = 2
+COUNT = 3
+HEADER = 4  # for each body
 PIECE = 9
 GOLDEN = 0.6180339887498949
 LOOKS = 40  # the golden section is then 4e-9 wide
@@ -77,15 +80,15 @@ def overlap(d: Vector, a: Symmetric, b: Symmetric) -> bool:
 
 
 @jit()
-def placed_touches(x: Vector, r: Matrix, surfaces: Array) -> bool:
-    """Whether any piece of the secondary overlaps any piece of the primary, at X and R."""
-    first_secondary = HEADER + PIECE * int(surfaces[1])
-    for i in range(int(surfaces[2])):
-        at = first_secondary + PIECE * i
+def placed_touches(x: Vector, r: Matrix, surfaces: Array, one: int, two: int) -> bool:
+    """Whether any piece of body ``one`` overlaps any piece of body ``two``, at X and R in the frame of ``two``."""
+    first_1, first_2 = int(surfaces[HEADER * one + FIRST]), int(surfaces[HEADER * two + FIRST])
+    for i in range(int(surfaces[HEADER * one + COUNT])):
+        at = first_1 + PIECE * i
         centre = rotate(r, vector_at(surfaces, at))
         b = turned(r, (*vector_at(surfaces, at + 3), *vector_at(surfaces, at + 6)))
-        for j in range(int(surfaces[1])):
-            k = HEADER + PIECE * j
+        for j in range(int(surfaces[HEADER * two + COUNT])):
+            k = first_2 + PIECE * j
             d = (
                 x[0] + centre[0] - surfaces[k],
                 x[1] + centre[1] - surfaces[k + 1],
@@ -96,30 +99,35 @@ def placed_touches(x: Vector, r: Matrix, surfaces: Array) -> bool:
     return False
 
 
-@jit(TOUCH)
-def pair_touches(state: Array, surfaces: Array, x: float, y: float, z: float) -> bool:
-    """Whether the pair touches on the straight way from the position (x, y, z) before a step to that of the state.
+@jit()
+def touch_on_the_way(
+    before: Vector, after: Vector, r2: Matrix, r1: Matrix, surfaces: Array, one: int, two: int
+) -> bool:
+    """Whether two bodies touch on a straight way of body ``one`` relative to body ``two``, in inertial axes.
 
-    The part of the way within reach is looked at in places no further apart than half the
-    smallest semi-axis, and at its end, with the attitudes of the end of the step.
+    The part of the way within reach is looked at in places no further apart than half the smallest semi-axis, and at
+    its end, with the attitudes of the end.
     """
-    after = vector_at(state, POSITION)
-    way = (after[0] - x, after[1] - y, after[2] - z)
+    reach = surfaces[HEADER * one + RADIUS] + surfaces[HEADER * two + RADIUS]
+    way = (after[0] - before[0], after[1] - before[1], after[2] - before[2])
     square = dot(way, way)
-    closest = -dot((x, y, z), way) / square if square > 0.0 else 1.0  # of the whole straight line
-    point = (x + closest * way[0], y + closest * way[1], z + closest * way[2])
-    inside = surfaces[0] * surfaces[0] - dot(point, point)
-    if inside <= 0.0:
+    closest = -dot(before, way) / square if square > 0.0 else 1.0  # of the whole straight line
+    point = (before[0] + closest * way[0], before[1] + closest * way[1], before[2] + closest * way[2])
+    inside = reach * reach - dot(point, point)
+    if inside <= 0.0 or surfaces[HEADER * one + COUNT] * surfaces[HEADER * two + COUNT] == 0.0:
         return False
     half = sqrt(inside / square) if square > 0.0 else 0.0
     first, last = max(0.0, closest - half), min(1.0, closest + half)
     if first > last:
         return False
-    r2 = matrix_at(state, ATTITUDE_2)
-    r = relative_attitude(r2, matrix_at(state, ATTITUDE_1))
-    places = 1 + int((last - first) * sqrt(square) / surfaces[SPACING])
+    r = relative_attitude(r2, r1)
+    smaller = min(surfaces[HEADER * one + SMALLEST], surfaces[HEADER * two + SMALLEST])
+    larger = max(surfaces[HEADER * one + SMALLEST], surfaces[HEADER * two + SMALLEST])
+    spacing = 0.5 * (smaller if smaller > 0.0 else larger)
+    places = 1 + int((last - first) * sqrt(square) / spacing)
     for place in range(1, places + 1):
         s = first + (last - first) * place / places
-        if placed_touches(rotate_back(r2, (x + s * way[0], y + s * way[1], z + s * way[2])), r, surfaces):
+        x = rotate_back(r2, (before[0] + s * way[0], before[1] + s * way[1], before[2] + s * way[2]))
+        if placed_touches(x, r, surfaces, one, two):
             return True
     return False

@@ -12,7 +12,7 @@ from math import asin, sqrt
 import numpy as np
 
 from binaryast.kernels.jit import Array, Vector, jit
-from binaryast.kernels.so3 import hat, rodrigues_coefficients
+from binaryast.kernels.so3 import hat, rodrigues_coefficients, solve_linear
 
 MOST_ITERATIONS = 20
 REMAINING = 1e-34  # square of the error left in Cayley coordinates, relative
@@ -34,9 +34,8 @@ def gradient(inertia: Array, f: Array) -> Array:
     first, second, third, fourth = rodrigues_coefficients(sqrt(f @ f))
     momentum = inertia @ f
     result: Array = (
-        third * np.outer(momentum, f)
+        np.expand_dims(third * momentum + fourth * np.cross(f, momentum), 1) * f
         + first * inertia
-        + fourth * np.outer(np.cross(f, momentum), f)
         + second * (hat(f) @ inertia - hat(momentum))
     )
     return result
@@ -50,7 +49,7 @@ def solve(inertia: Array, g: Array) -> tuple[Array, int]:
     """
     if not abs(g[0]) + abs(g[1]) + abs(g[2]) < 1e150:
         return np.zeros(3), -1
-    f: Array = np.linalg.solve(inertia, g)
+    f: Array = solve_linear(inertia, g)
     sine = sqrt(f @ f)
     if sine == 0.0:
         return f, 0
@@ -58,16 +57,16 @@ def solve(inertia: Array, g: Array) -> tuple[Array, int]:
         return f, -1
     f = f * (asin(min(sine, 0.95)) / sine)  # exact for a spin about a principal axis, held back near the fold
     first, second, _, _ = rodrigues_coefficients(sqrt(f @ f))
-    f = np.linalg.solve(inertia, g - second * np.cross(f, inertia @ f)) / first  # one pass with the gyroscopic term
+    f = solve_linear(inertia, g - second * np.cross(f, inertia @ f)) / first  # one pass with the gyroscopic term
     for iteration in range(1, MOST_ITERATIONS + 1):
         matrix = gradient(inertia, f)
-        correction: Array = np.linalg.solve(matrix, g - residual_function(inertia, f))
+        correction: Array = solve_linear(matrix, g - residual_function(inertia, f))
         f = f + correction  # (130)
         size = sqrt(correction @ correction)
         if not size < 10.0:  # divergence, or not a number
             break
         if size <= CONVERGED * sqrt(f @ f):
-            if np.linalg.det(matrix) <= 0.0:  # beyond the largest turn that (128) can give
+            if matrix[0] @ np.cross(matrix[1], matrix[2]) <= 0.0:  # beyond the largest turn that (128) can give
                 break
             return f, iteration
     return f, -1

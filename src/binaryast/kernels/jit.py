@@ -6,6 +6,7 @@ signature (``@jit(SIGNATURE)``), compiled once and kept on disk. numba's own cac
 """
 
 import contextlib
+import functools
 import hashlib
 import os
 import shutil
@@ -31,21 +32,30 @@ Quaternion: TypeAlias = tuple[float, float, float, float]
 Matrix: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
 PairGravity: TypeAlias = tuple[float, float, float, float, float, float, float]  # U, dU/dX, M
 PairPotential: TypeAlias = Callable[..., PairGravity]
+Measures: TypeAlias = tuple[float, float, float, float, float, float, float, float, float]
 
 ARRAY = types.Array(types.float64, 1, "C")
 ROWS = types.Array(types.float64, 2, "C")
+BODY_MATRICES = types.Array(types.float64, 3, "C")  # one matrix for each body
+PAIR_INDICES = types.Array(types.int64, 2, "C")  # one row for each pair
 
 # U, dU/dX (3), M (3) from the parameters p, X (3) and R (9, row by row); scalars only, so that the function can be
 # inlined, run in lanes or be compiled for another device.
 PAIR_POTENTIAL = types.UniTuple(types.float64, 7)(ARRAY, *[types.float64] * 12)
-# What is watched at every step: energy, angular momentum (3), rotation error, separation from (state, constants).
-MEASURE = types.UniTuple(types.float64, 6)(ARRAY, ARRAY)
-# Whether surfaces touch, from (state, surfaces, position before the step).
-TOUCH = types.boolean(ARRAY, ARRAY, *[types.float64] * 3)
-# One step of h: status from (state, constants, potential, parameters, h).
-STEP = types.int64(ARRAY, ARRAY, types.FunctionType(PAIR_POTENTIAL), ARRAY, types.float64)
-# Completes a working state: (state, potential, parameters).
-PREPARE = types.void(ARRAY, types.FunctionType(PAIR_POTENTIAL), ARRAY)
+# What is watched at every step, from (state, constants): energy, angular and linear momentum (3 each), rotation error,
+# smallest separation.
+MEASURE = types.UniTuple(types.float64, 9)(ARRAY, ARRAY)
+# Which pair of surfaces touches, counted from 1, or 0, from (state, surfaces, state before the step).
+TOUCH = types.int64(ARRAY, ARRAY, ARRAY)
+# How a system attracts: the potential of a pair, or a table of one for each pair of several bodies.
+PAIR_POINTER = types.FunctionType(PAIR_POTENTIAL)
+PAIR_POINTERS = types.Array(types.int64, 1, "C")
+
+
+def step_signature(attraction: Any) -> Any:
+    """Return the signature of one step of h: status from (state, constants, potential(s), parameters, h)."""
+    return types.int64(ARRAY, ARRAY, attraction, ARRAY, types.float64)
+
 
 OPTIONS = {"nogil": True, "error_model": "numpy"}  # numpy: a division by zero gives inf, without a branch for each
 _UNUSED_FOR = 30 * 86400.0  # seconds after which the cache of another version is removed
@@ -134,6 +144,26 @@ def jit(signature: Any = None, *, allocates: bool = False, **options: Any) -> Ca
                 )(function)
             finally:
                 numba.config.CACHE_DIR = previous
+
+    return decorate
+
+
+def reference(signature: Any) -> Callable[[Function], Function]:
+    """Compile a kernel that may make arrays when it is first called, for each of these takes seconds; kept as others.
+
+    It is for the equations as printed, of which a user needs one or two: it can be called from Python only.
+    """
+
+    def decorate(function: Function) -> Function:
+        compiled: list[Callable[..., Any]] = []
+
+        @functools.wraps(function)
+        def call(*arguments: Any) -> Any:
+            if not compiled:
+                compiled.append(jit(signature, allocates=True)(function))
+            return compiled[0](*arguments)
+
+        return call  # type: ignore[return-value]
 
     return decorate
 

@@ -1,52 +1,63 @@
-"""Many steps: watch each, save every k-th, stop on contact or trouble. Never prints, never allocates."""
+"""Many steps: watch each, save every k-th, stop on contact or trouble. Never prints, never allocates.
+
+`advance` is compiled for a pair and for several bodies, in ``pair/loop.py`` and ``bodies/loop.py``; a step, what
+is watched and how bodies attract are pointers, so neither is compiled again for another method or model.
+"""
 
 from collections.abc import Callable
 from math import sqrt
+from typing import Any
 
 from numba import types
 
-from binaryast.kernels.jit import ARRAY, MEASURE, PAIR_POTENTIAL, ROWS, STEP, TOUCH, Array, PairPotential, jit
-from binaryast.kernels.layout import POSITION, vector_at
+from binaryast.kernels.jit import ARRAY, MEASURE, ROWS, TOUCH, Array, Measures, step_signature
 from binaryast.kernels.status import COMPLETED, CONTACT
 
 # What is watched: the references first, then the extremes over every step.
 ENERGY = 0  # E0
 ANGULAR_MOMENTUM = 1  # pi_T0 (3)
-ENERGY_ERROR = 4  # largest |E - E0|
-MOMENTUM_ERROR = 5  # largest |pi_T - pi_T0|
-ROTATION_ERROR = 6  # largest ||I - R^T R||
-CLOSEST = 7  # smallest |x|
-CLOSEST_STEP = 8  # and the step after which it was seen
-STEPS = 9  # steps done
-WATCH_SIZE = 10
-
-_LOOP = types.int64(
-    types.FunctionType(STEP),
-    types.FunctionType(MEASURE),
-    types.FunctionType(TOUCH),
-    types.FunctionType(PAIR_POTENTIAL),
-    ARRAY,  # parameters
-    ARRAY,  # constants
-    ARRAY,  # surfaces
-    ARRAY,  # state
-    ARRAY,  # watch
-    types.float64,  # h
-    types.int64,  # count
-    types.int64,  # stride
-    ROWS,  # rows
-)
+LINEAR_MOMENTUM = 4  # gamma_T0 (3)
+REFERENCES = 7  # how many there are
+ENERGY_ERROR = 7  # largest |E - E0|
+ANGULAR_ERROR = 8  # largest |pi_T - pi_T0|
+LINEAR_ERROR = 9  # largest |gamma_T - gamma_T0|
+ROTATION_ERROR = 10  # largest ||I - R^T R||
+CLOSEST = 11  # smallest distance of two mass centres
+CLOSEST_STEP = 12  # and the step after which it was seen
+STEPS = 13  # steps done
+WATCH_SIZE = 14
 
 
-@jit(_LOOP)
+def loop_signature(attraction: Any) -> Any:
+    """Return the signature of `advance` for one potential or a list of them."""
+    return types.int64(
+        types.FunctionType(step_signature(attraction)),
+        types.FunctionType(MEASURE),
+        types.FunctionType(TOUCH),
+        attraction,
+        ARRAY,  # parameters
+        ARRAY,  # constants
+        ARRAY,  # surfaces
+        ARRAY,  # state
+        ARRAY,  # before
+        ARRAY,  # watch
+        types.float64,  # h
+        types.int64,  # count
+        types.int64,  # stride
+        ROWS,  # rows
+    )
+
+
 def advance(
     step: Callable[..., int],
-    measure: Callable[..., tuple[float, float, float, float, float, float]],
-    touch: Callable[..., bool],
-    potential: PairPotential,
+    measure: Callable[..., Measures],
+    touching: Callable[..., int],
+    attraction: Any,
     parameters: Array,
     constants: Array,
     surfaces: Array,
     state: Array,
+    before: Array,
     watch: Array,
     h: float,
     count: int,
@@ -57,21 +68,28 @@ def advance(
 
     The number of steps done is kept in ``watch``; after every ``stride``-th of them the start of the state goes into
     the next of ``rows``, the row of step k being k/stride - 1. Whether surfaces touch is looked at all along the way of
-    each step. Returns a status; the state
-    then is the last good one, or the first with contact.
+    each step. ``before`` keeps as much of the state before a step as a step in vain may have changed, and
+    at least the positions. Returns a status; the state then is the last good one, or the first with contact.
     """
     for _ in range(count):
-        before = vector_at(state, POSITION)
-        status = step(state, constants, potential, parameters, h)
+        for i in range(before.size):
+            before[i] = state[i]
+        status = step(state, constants, attraction, parameters, h)
         if status != COMPLETED:
+            for i in range(before.size):
+                state[i] = before[i]
             return status
-        energy, l1, l2, l3, rotation_error, separation = measure(state, constants)
+        energy, l1, l2, l3, p1, p2, p3, rotation_error, separation = measure(state, constants)
         watch[STEPS] += 1.0
         watch[ENERGY_ERROR] = max(watch[ENERGY_ERROR], abs(energy - watch[ENERGY]))
         l1 -= watch[ANGULAR_MOMENTUM]
         l2 -= watch[ANGULAR_MOMENTUM + 1]
         l3 -= watch[ANGULAR_MOMENTUM + 2]
-        watch[MOMENTUM_ERROR] = max(watch[MOMENTUM_ERROR], sqrt(l1 * l1 + l2 * l2 + l3 * l3))
+        watch[ANGULAR_ERROR] = max(watch[ANGULAR_ERROR], sqrt(l1 * l1 + l2 * l2 + l3 * l3))
+        p1 -= watch[LINEAR_MOMENTUM]
+        p2 -= watch[LINEAR_MOMENTUM + 1]
+        p3 -= watch[LINEAR_MOMENTUM + 2]
+        watch[LINEAR_ERROR] = max(watch[LINEAR_ERROR], sqrt(p1 * p1 + p2 * p2 + p3 * p3))
         watch[ROTATION_ERROR] = max(watch[ROTATION_ERROR], rotation_error)
         if separation < watch[CLOSEST]:
             watch[CLOSEST] = separation
@@ -81,6 +99,7 @@ def advance(
             row = done // stride - 1
             for i in range(rows.shape[1]):
                 rows[row, i] = state[i]
-        if touch(state, surfaces, *before):
-            return CONTACT
+        pair = touching(state, surfaces, before)
+        if pair > 0:
+            return CONTACT + pair - 1
     return COMPLETED

@@ -25,6 +25,15 @@ def vee(matrix: Array) -> Array:
     return 0.5 * np.array([matrix[2, 1] - matrix[1, 2], matrix[0, 2] - matrix[2, 0], matrix[1, 0] - matrix[0, 1]])
 
 
+@jit(allocates=True)
+def solve_linear(matrix: Array, b: Array) -> Array:
+    """Return x of A x = b for a matrix (3, 3), by its cofactors."""
+    r1, r2, r3 = matrix[0], matrix[1], matrix[2]
+    c1, c2, c3 = np.cross(r2, r3), np.cross(r3, r1), np.cross(r1, r2)
+    result: Array = (c1 * b[0] + c2 * b[1] + c3 * b[2]) / (r1 @ c1)
+    return result
+
+
 @jit()
 def rodrigues_coefficients(angle: float) -> tuple[float, float, float, float]:
     """Return sin(t)/t, (1 - cos t)/t^2 and their derivatives divided by t, by series where t is small.

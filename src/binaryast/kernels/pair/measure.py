@@ -2,8 +2,9 @@
 
 from math import sqrt
 
-from binaryast.kernels.jit import MEASURE, Array, jit
-from binaryast.kernels.layout import (
+from binaryast.kernels.arrays import matrix_at, vector_at
+from binaryast.kernels.jit import MEASURE, Array, Measures, jit
+from binaryast.kernels.pair.layout import (
     ATTITUDE_1,
     ATTITUDE_2,
     INVERSE_1,
@@ -14,15 +15,13 @@ from binaryast.kernels.layout import (
     POTENTIAL,
     REDUCED_MASS,
     VELOCITY,
-    matrix_at,
-    vector_at,
 )
 from binaryast.kernels.so3 import cross, dot, orthogonality_error, rotate
 
 
 @jit(MEASURE)
-def pair_measure(state: Array, constants: Array) -> tuple[float, float, float, float, float, float]:
-    """Return E (of section 5.1, about the mass centre), the three components of pi_T, ||I - R^T R||, |x|."""
+def measure(state: Array, constants: Array) -> Measures:
+    """Return E of section 5.1, pi_T (3), gamma_T (3), which a pair keeps by construction, ||I - R^T R|| and |x|."""
     mass = constants[REDUCED_MASS]
     x, v = vector_at(state, POSITION), vector_at(state, VELOCITY)
     p2, p1 = vector_at(state, MOMENTUM_2), vector_at(state, MOMENTUM_1)
@@ -37,6 +36,9 @@ def pair_measure(state: Array, constants: Array) -> tuple[float, float, float, f
         mass * orbit[0] + spin_2[0] + spin_1[0],
         mass * orbit[1] + spin_2[1] + spin_1[1],
         mass * orbit[2] + spin_2[2] + spin_1[2],
+        0.0,
+        0.0,
+        0.0,
         max(orthogonality_error(r2), orthogonality_error(r1)),
         sqrt(dot(x, x)),
     )

@@ -5,10 +5,14 @@ angular momentum in its own body's frame, attitudes as unit quaternions, and (12
 Values travel as tuples, which the compiler keeps in registers.
 """
 
-from binaryast.kernels.compensated import add_vector, turn_quaternion
-from binaryast.kernels.implicit import solve_cayley
-from binaryast.kernels.jit import PREPARE, STEP, Array, Matrix, PairPotential, Quaternion, Vector, jit
-from binaryast.kernels.layout import (
+from numba import types
+
+from binaryast.kernels.arrays import matrix_at, put_quaternion, put_vector, quaternion_at, vector_at
+from binaryast.kernels.attraction import attract
+from binaryast.kernels.compensated import add_vector
+from binaryast.kernels.free_rotation import turn
+from binaryast.kernels.jit import ARRAY, PAIR_POINTER, Array, PairPotential, Vector, jit, step_signature
+from binaryast.kernels.pair.layout import (
     ATTITUDE_1,
     ATTITUDE_2,
     GRADIENT,
@@ -25,51 +29,9 @@ from binaryast.kernels.layout import (
     TORQUE_1,
     TORQUE_2,
     VELOCITY,
-    matrix_at,
-    put_quaternion,
-    put_vector,
-    quaternion_at,
-    vector_at,
 )
-from binaryast.kernels.so3 import cayley, cross, quaternion_to_matrix, relative_attitude, rotate, rotate_back
-from binaryast.kernels.status import COMPLETED, NO_ROTATION_1, NO_ROTATION_2, NOT_FINITE
-
-
-@jit()
-def turn_momentum(p: Vector, f: Quaternion) -> Vector:
-    """Return F^T P - P without cancellation: -2 w v x P + 2 v x (v x P), (v, w) being the turn's quaternion."""
-    v = (f[0], f[1], f[2])
-    c = cross(v, p)
-    d = cross(v, c)
-    w = f[3]
-    return 2.0 * (d[0] - w * c[0]), 2.0 * (d[1] - w * c[1]), 2.0 * (d[2] - w * c[2])
-
-
-@jit()
-def turn(
-    q: Quaternion, rq: Quaternion, p: Vector, rp: Vector, inverse: Vector, ratios: Vector, h: float
-) -> tuple[Quaternion, Quaternion, Vector, Vector, bool]:
-    """Turn one body freely for h; whether the implicit equation had a solution is the last value."""
-    c, iterations = solve_cayley(inverse, ratios, (h * p[0], h * p[1], h * p[2]))  # (123), (124)
-    f = cayley(c)
-    q, rq = turn_quaternion(q, rq, f)  # (122), (127)
-    p, rp = add_vector(p, rp, 1.0, turn_momentum(p, f))  # the F^T of (120), (121)
-    return q, rq, p, rp, iterations >= 0
-
-
-@jit()
-def attract(
-    x_inertial: Vector, r2: Matrix, r1: Matrix, potential: PairPotential, parameters: Array
-) -> tuple[float, Vector, Vector, Vector]:
-    """Return U, dU/dx1 in inertial axes and the torque on each body in its own frame, the primary's first."""
-    x = rotate_back(r2, x_inertial)  # X, (34)
-    r = relative_attitude(r2, r1)  # R, (35)
-    u, g1, g2, g3, m1, m2, m3 = potential(
-        parameters, x[0], x[1], x[2], r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]
-    )
-    xg = cross(x, (g1, g2, g3))
-    n1, n2, n3 = rotate_back(r, (m1, m2, m3))
-    return u, rotate(r2, (g1, g2, g3)), (xg[0] + m1, xg[1] + m2, xg[2] + m3), (-n1, -n2, -n3)
+from binaryast.kernels.so3 import quaternion_to_matrix
+from binaryast.kernels.status import COMPLETED, NO_ROTATION, NOT_FINITE
 
 
 @jit()
@@ -88,8 +50,8 @@ def put_exerted(state: Array, u: float, gradient: Vector, torque_2: Vector, torq
     put_vector(state, TORQUE_1, torque_1)
 
 
-@jit(STEP)
-def pair_step(state: Array, constants: Array, potential: PairPotential, parameters: Array, h: float) -> int:
+@jit(step_signature(PAIR_POINTER))
+def step(state: Array, constants: Array, potential: PairPotential, parameters: Array, h: float) -> int:
     """Advance a pair by h; the state is left as it was where the step has no solution, and the status says so."""
     to_velocity = -0.5 * h / constants[REDUCED_MASS]
     half = 0.5 * h
@@ -109,12 +71,12 @@ def pair_step(state: Array, constants: Array, potential: PairPotential, paramete
     inverse, ratios = vector_at(constants, INVERSE_2), vector_at(constants, RATIOS_2)
     q2, rq2, p2, rp2, solved = turn(q2, rq2, p2, rp2, inverse, ratios, h)
     if not solved:
-        return NO_ROTATION_2
+        return NO_ROTATION
     q1, rq1 = quaternion_at(state, ATTITUDE_1), quaternion_at(state, REMAINDER + ATTITUDE_1)
     inverse, ratios = vector_at(constants, INVERSE_1), vector_at(constants, RATIOS_1)
     q1, rq1, p1, rp1, solved = turn(q1, rq1, p1, rp1, inverse, ratios, h)
     if not solved:
-        return NO_ROTATION_1
+        return NO_ROTATION + 1
 
     # half a kick at the new configuration
     u, gradient, torque_2, torque_1 = attract(
@@ -142,7 +104,7 @@ def pair_step(state: Array, constants: Array, potential: PairPotential, paramete
     return COMPLETED
 
 
-@jit(PREPARE)
+@jit(types.void(ARRAY, PAIR_POINTER, ARRAY))
 def prepare(state: Array, potential: PairPotential, parameters: Array) -> None:
     """Fill in what the motion in the state exerts: a working state is complete after this."""
     u, gradient, torque_2, torque_1 = attract(

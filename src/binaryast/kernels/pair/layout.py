@@ -7,9 +7,6 @@ configuration, a function of the motion that is kept so that a step evaluates it
 numbers the part that it lost to rounding. Nothing else influences the next step: this array is a checkpoint.
 """
 
-from binaryast.kernels.jit import Array, Matrix, Quaternion, Vector, jit
-from binaryast.kernels.so3 import quaternion_to_matrix
-
 POSITION = 0  # x1 - x2 [m]
 VELOCITY = 3
 ATTITUDE_2 = 6  # quaternion
@@ -31,33 +28,3 @@ RATIOS_2 = 4
 INVERSE_1 = 7
 RATIOS_1 = 10
 CONSTANTS_SIZE = 13
-
-
-@jit()
-def vector_at(state: Array, at: int) -> Vector:
-    """Return three numbers of the state."""
-    return state[at], state[at + 1], state[at + 2]
-
-
-@jit()
-def quaternion_at(state: Array, at: int) -> Quaternion:
-    """Return four numbers of the state."""
-    return state[at], state[at + 1], state[at + 2], state[at + 3]
-
-
-@jit()
-def matrix_at(state: Array, at: int) -> Matrix:
-    """Return the rotation matrix of the quaternion at ``at``."""
-    return quaternion_to_matrix(quaternion_at(state, at))
-
-
-@jit()
-def put_vector(state: Array, at: int, v: Vector) -> None:
-    """Put three numbers into the state."""
-    state[at], state[at + 1], state[at + 2] = v
-
-
-@jit()
-def put_quaternion(state: Array, at: int, q: Quaternion) -> None:
-    """Put four numbers into the state."""
-    state[at], state[at + 1], state[at + 2], state[at + 3] = q

@@ -1,0 +1,1 @@
+"""Any number of bodies in the paper's inertial frame, each pair with its own gravity."""

@@ -1,0 +1,28 @@
+"""The discrete free rotation of one body: the half of the variational integrator's step that turns it."""
+
+from binaryast.kernels.compensated import add_vector, turn_quaternion
+from binaryast.kernels.implicit import solve_cayley
+from binaryast.kernels.jit import Quaternion, Vector, jit
+from binaryast.kernels.so3 import cayley, cross
+
+
+@jit()
+def turn_momentum(p: Vector, f: Quaternion) -> Vector:
+    """Return F^T P - P without cancellation: -2 w v x P + 2 v x (v x P), (v, w) being the turn's quaternion."""
+    v = (f[0], f[1], f[2])
+    c = cross(v, p)
+    d = cross(v, c)
+    w = f[3]
+    return 2.0 * (d[0] - w * c[0]), 2.0 * (d[1] - w * c[1]), 2.0 * (d[2] - w * c[2])
+
+
+@jit()
+def turn(
+    q: Quaternion, rq: Quaternion, p: Vector, rp: Vector, inverse: Vector, ratios: Vector, h: float
+) -> tuple[Quaternion, Quaternion, Vector, Vector, bool]:
+    """Turn one body freely for h; whether the implicit equation had a solution is the last value."""
+    c, iterations = solve_cayley(inverse, ratios, (h * p[0], h * p[1], h * p[2]))  # (123), (124)
+    f = cayley(c)
+    q, rq = turn_quaternion(q, rq, f)  # (122), (127)
+    p, rp = add_vector(p, rp, 1.0, turn_momentum(p, f))  # the F^T of (120), (121)
+    return q, rq, p, rp, iterations >= 0

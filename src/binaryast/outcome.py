@@ -1,0 +1,85 @@
+"""What a run hands over to be reported, however it was followed."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from binaryast.kernels import loop
+from binaryast.system import System
+from binaryast.units import Floats
+from binaryast.working import Motion
+
+
+@dataclass
+class Watch:
+    """What is watched at every step: the references at the start, and how far from them the run went.
+
+    ``array`` has the layout of ``kernels/loop.py``; compiled loops write into it.
+    """
+
+    array: Floats = field(default_factory=lambda: np.zeros(loop.WATCH_SIZE))
+    potential_energy: float = 0.0  # at the start
+
+    def begin(self, measures: tuple[float, ...], potential_energy: float) -> None:
+        """Keep the references."""
+        self.array[: loop.REFERENCES] = measures[: loop.REFERENCES]
+        self.array[loop.ROTATION_ERROR] = measures[loop.REFERENCES]
+        self.array[loop.CLOSEST] = measures[loop.REFERENCES + 1]
+        self.potential_energy = potential_energy
+
+    def look(self, measures: tuple[float, ...]) -> bool:
+        """Take in what was measured at one more step; whether the bodies were never so close before."""
+        array = self.array
+        new = np.array(measures)
+        differences = np.abs(new[: loop.REFERENCES] - array[: loop.REFERENCES])
+        angular, linear = (
+            float(np.linalg.norm(differences[at : at + 3])) for at in (loop.ANGULAR_MOMENTUM, loop.LINEAR_MOMENTUM)
+        )
+        for at, value in (
+            (loop.ENERGY_ERROR, differences[loop.ENERGY]),
+            (loop.ANGULAR_ERROR, angular),
+            (loop.LINEAR_ERROR, linear),
+            (loop.ROTATION_ERROR, new[loop.REFERENCES]),
+        ):
+            array[at] = max(array[at], value)
+        closer = bool(new[loop.REFERENCES + 1] < array[loop.CLOSEST])
+        array[loop.CLOSEST] = min(array[loop.CLOSEST], new[loop.REFERENCES + 1])
+        return closer
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A run that is over.
+
+    Attributes
+    ----------
+    time, motion : ndarray, Motion
+        The saved rows.
+    watch, closest_time : Watch, float
+        The figures over every step, and when the bodies were closest [s].
+    status, message : str
+        How it ended.
+    steps, step, wall_time : int, float, float
+        Steps taken, their size [s], and how long they took [s].
+    """
+
+    time: Floats
+    motion: Motion
+    watch: Watch
+    closest_time: float
+    status: str
+    message: str
+    steps: int
+    step: float
+    wall_time: float
+
+
+def contact_message(system: System, pair: int, after: float) -> str:
+    """Return what is said of a contact."""
+    touched = system.pairs[pair]
+    return f"{system.names[touched.secondary]} touched {system.names[touched.primary]} within a step of {after:g} s"
+
+
+def interruption_message(after: float) -> str:
+    """Return what is said after Ctrl-C."""
+    return f"stopped after {after:g} s; go on from the last row, run[-1]"

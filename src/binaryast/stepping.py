@@ -1,0 +1,185 @@
+"""A run by compiled steps: equal steps in segments, the loop called in chunks, and how it ended."""
+
+import time
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from binaryast import working
+from binaryast.errors import ContactError, StepError
+from binaryast.integrators import Stepping
+from binaryast.kernels import loop, status
+from binaryast.outcome import Outcome, Watch, contact_message, interruption_message
+from binaryast.progress import keyboard
+from binaryast.schedule import SLACK, Segment
+from binaryast.state import State
+from binaryast.system import System
+from binaryast.units import Floats, brief
+
+CHUNK_SECONDS = 0.1  # between two looks at the keyboard
+
+
+def turn_error(name: str, spin: float, integrator: Stepping, step: float) -> StepError:
+    """Return the error of a step that turns a body too far."""
+    largest = integrator.largest_turn / spin
+    return StepError(
+        f"step: {name} spins at {spin:.6g} rad/s (once in {2 * pi / spin / 3600:.4g} h), h Omega = {step * spin:.4g}; "
+        f"the implicit equation (128) has a solution only below {integrator.largest_turn:g}: the step must be below "
+        f"{largest:.6g} s, got {step:g} s"
+    )
+
+
+class SteppedRun:
+    """One run under way."""
+
+    def __init__(self, system: System, state: State, integrator: Stepping, segments: list[Segment]) -> None:
+        self.system, self.integrator, self.segments = system, integrator, segments
+        inertial = integrator.is_inertial(len(system.bodies))
+        self.kernel = integrator.kernel(inertial=inertial)
+        self.working = working.of(system, state, inertial=inertial)
+        self.end = sum(segment.steps * segment.step for segment in segments)
+        self.watch = Watch()
+        self.rows: list[Floats] = [self._row()]
+        self.times: list[Floats] = [np.zeros(1)]
+        self.code = status.COMPLETED
+        self.pressed: list[int] = []
+        self.raised = ""
+        self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
+        self._begin()
+
+    def _row(self) -> Floats:
+        return self.working.state[None, : self.working.row_size].copy()
+
+    def _begin(self) -> None:
+        """Look at the start: overlap; and keep the references."""
+        w = self.working
+        measures = w.measure(w.state, w.constants)
+        separation = measures[-1]
+        touching = 1 if separation == 0 else w.touching(w.state, w.surfaces, w.state)
+        if touching:
+            pair = self.system.pairs[touching - 1]
+            names = f"{self.system.names[pair.primary]} and {self.system.names[pair.secondary]}"
+            raise ContactError(
+                f"state: {names} overlap at the start, {self._distance(touching - 1):g} m apart: "
+                "expected surfaces that do not touch; move them further apart"
+            )
+        self.watch.begin(measures, float(w.state[w.potential_at]))
+
+    def _distance(self, pair: int) -> float:
+        position = self.working.from_rows(self.rows[0], self.times[0]).position[0]
+        two, one = self.system.pairs[pair][:2]
+        return float(np.linalg.norm(position[one] - position[two]))
+
+    def go(self, show: Any) -> None:
+        """Take all segments, as far as it goes.
+
+        Raises
+        ------
+        StepError
+            Where the first step has no solution.
+        """
+        with keyboard() as self.pressed:
+            for segment in self.segments:
+                self._take(segment, show)
+                if self.code != status.COMPLETED or self.pressed:
+                    break
+        if self.steps == 0 and status.NO_ROTATION <= self.code < status.CONTACT:
+            raise self._turn_error()
+
+    def _take(self, segment: Segment, show: Any) -> None:
+        """Take one segment, in chunks short enough for the keyboard and the progress bar."""
+        rows = np.empty((segment.steps // segment.stride, self.working.row_size))
+        self.rows.append(rows)
+        watch = self.watch.array
+        watch[loop.STEPS] = 0
+        chunk = 16
+        while (left := segment.steps - int(watch[loop.STEPS])) and self.code == status.COMPLETED and not self.pressed:
+            began = time.perf_counter()
+            count = min(chunk, left)
+            self.code = self._advance(segment, count, rows)
+            spent = time.perf_counter() - began
+            self.wall_time += spent
+            chunk = max(1, min(100 * count, int(count * CHUNK_SECONDS / max(spent, 1e-6))))
+            show(self.elapsed + watch[loop.STEPS] * segment.step)
+        self._keep(segment)
+
+    def _advance(self, segment: Segment, count: int, rows: Floats) -> int:
+        """Call the compiled loop; a potential of the user's that raises ends the run like any other trouble."""
+        w = self.working
+        try:
+            code: int = w.advance(
+                self.kernel,
+                w.measure,
+                w.touching,
+                w.attraction,
+                w.parameters,
+                w.constants,
+                w.surfaces,
+                w.state,
+                w.before,
+                self.watch.array,
+                segment.step,
+                count,
+                segment.stride,
+                rows,
+            )
+        except Exception as error:  # whatever the user's function raises, in the middle of a step
+            w.state[: w.before.size] = w.before
+            self.raised = f"the potential raised {type(error).__name__}: {brief(error)}"
+            return status.NOT_FINITE
+        return code
+
+    def _keep(self, segment: Segment) -> None:
+        """Close a segment: its saved rows with their times, and the last state where that is not one of them."""
+        watch = self.watch.array
+        done = int(watch[loop.STEPS])
+        saved = done // segment.stride
+        self.rows[-1] = self.rows[-1][:saved]
+        self.times.append(self.elapsed + np.arange(1, saved + 1) * (segment.stride * segment.step))
+        if done % segment.stride:
+            self.rows.append(self._row())
+            self.times.append(np.array([self.elapsed + done * segment.step]))
+        if watch[loop.CLOSEST_STEP]:
+            self.closest_time = self.elapsed + watch[loop.CLOSEST_STEP] * segment.step
+            watch[loop.CLOSEST_STEP] = 0
+        self.elapsed += done * segment.step
+        self.steps += done
+
+    def outcome(self) -> Outcome:
+        """Return what has been computed."""
+        rows, times = np.concatenate(self.rows), np.concatenate(self.times)
+        ended, message = self._end()
+        return Outcome(
+            time=times,
+            motion=self.working.from_rows(rows, times),
+            watch=self.watch,
+            closest_time=self.closest_time,
+            status=ended,
+            message=message,
+            steps=self.steps,
+            step=self.segments[0].step,
+            wall_time=self.wall_time,
+        )
+
+    def _end(self) -> tuple[str, str]:
+        """Return the status and what there is to say about it."""
+        if self.pressed and self.elapsed < self.end * (1 - SLACK):
+            return "interrupted", interruption_message(self.elapsed)
+        if self.code >= status.CONTACT:
+            return "contact", contact_message(self.system, self.code - status.CONTACT, self.elapsed)
+        if self.code == status.NOT_FINITE:
+            reason = self.raised or "positions, momenta or gravity are not numbers any more"
+            return "failed", f"{reason}; the last good row is at {self.elapsed:g} s"
+        if self.code != status.COMPLETED:
+            return "failed", str(self._turn_error())
+        return "completed", ""
+
+    def _turn_error(self) -> StepError:
+        """Return the error of the body that turns too fast now."""
+        index = self.code - status.NO_ROTATION
+        body = self.system.bodies[index]
+        step = max(segment.step for segment in self.segments)
+        momentum, torque = self.working.momentum_and_torque(index)
+        spin = float(np.linalg.norm((momentum + step / 2 * torque) / body.si.moments))
+        return turn_error(body.name, spin, self.integrator, step)

@@ -1,0 +1,28 @@
+"""A system as the production steps see it: flat arrays, the compiled functions that go with them, and back.
+
+A pair is stepped in the variables of its relative frame, several bodies in those of the inertial frame.
+"""
+
+from binaryast.state import State
+from binaryast.system import System
+from binaryast.working.base import Motion, Working
+
+
+def of(system: System, state: State, *, inertial: bool = False) -> Working:
+    """Return the working arrays of a system at a state, for a pair those of the relative frame unless told otherwise.
+
+    Raises
+    ------
+    InputError
+        Where gravity is not a number there, or a user's potential raises.
+    """
+    if inertial or len(system.bodies) > 2:
+        from binaryast.working.bodies import WorkingBodies
+
+        return WorkingBodies(system, state)
+    from binaryast.working.pair import WorkingPair
+
+    return WorkingPair(system, state)
+
+
+__all__ = ["Motion", "Working", "of"]

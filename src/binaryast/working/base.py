@@ -1,0 +1,118 @@
+"""What the working arrays of a pair and of several bodies have in common."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from binaryast.kernels import contact
+from binaryast.kernels.so3 import quaternion_to_matrix
+from binaryast.state import State
+from binaryast.system import System
+from binaryast.units import Floats
+
+
+class Motion(NamedTuple):
+    """The motion of n bodies, time first: (N, n, 3), (N, n, 3), (N, n, 3, 3), (N, n, 3), and U (N,)."""
+
+    position: Floats
+    velocity: Floats
+    attitude: Floats
+    spin: Floats
+    potential_energy: Floats
+
+
+class Working(ABC):
+    """The arrays that the compiled loop works on, and the compiled functions that know their layout.
+
+    Attributes
+    ----------
+    state : ndarray
+        The working state: what a step changes, and a checkpoint.
+    before : ndarray
+        Room for as much of the state as a step in vain may spoil.
+    constants, surfaces, parameters : ndarray
+        Masses and moments; what may touch; what the potentials need.
+    attraction : object
+        The potential of a pair, or a list of one for each pair.
+    row_size, potential_at : int
+        How much of the state a saved row keeps, and where in it U is.
+    measure, touching, advance : callable
+        What is watched at a step, what touches in it, and the loop of steps.
+    """
+
+    state: Floats
+    before: Floats
+    constants: Floats
+    parameters: Floats
+    attraction: Any
+    row_size: int
+    potential_at: int
+    measure: Callable[..., Any]
+    touching: Callable[..., Any]
+    advance: Callable[..., Any]
+
+    def __init__(self, system: System, state: State) -> None:
+        self.system = system
+        self.masses = np.array([body.si.mass for body in system.bodies])
+        self.shares = self.masses / self.masses.sum()
+        self.origin = self.shares @ state.si.position, self.shares @ state.si.velocity
+        self.surfaces = surfaces(system)
+
+    @abstractmethod
+    def from_rows(self, rows: Floats, time: Floats) -> Motion:
+        """Return the inertial motion of all bodies from saved starts of working states at times since the start."""
+
+    @abstractmethod
+    def momentum_and_torque(self, body: int) -> tuple[Floats, Floats]:
+        """Return a body's angular momentum and the torque on it, both in its own frame."""
+
+    def moving_origin(self, time: Floats) -> Floats:
+        """Return the barycentre (N, 1, 3) at times since the start: it moves uniformly, so no step carries it."""
+        position, velocity = self.origin
+        return np.asarray((position + time[:, None] * velocity)[:, None, :])
+
+
+def check_gravity(system: System, state: State) -> None:
+    """Raise where a pair's gravity is not a number at a state; mass centres in one place are refused as an overlap."""
+    position, _, attitude, _ = state.si
+    for pair in system.pairs:
+        x = position[pair.secondary] - position[pair.primary]
+        if np.any(x):
+            to_primary = attitude[pair.primary].T
+            system.attraction(to_primary @ x, to_primary @ attitude[pair.secondary], pair)
+
+
+def surfaces(system: System) -> Floats:
+    """Return the surfaces of all bodies for the contact kernels."""
+    bodies = system.bodies
+    header = np.zeros((len(bodies), contact.HEADER))
+    pieces: list[Floats] = []
+    for i, body in enumerate(bodies):
+        surface = body.surface
+        first = header.size + contact.PIECE * len(pieces)
+        smallest = min((np.sqrt(max(np.linalg.eigvalsh(matrix)[0], 0.0)) for _, matrix in surface), default=0.0)
+        header[i] = body.bounding_radius, smallest, first, len(surface)
+        pieces += [np.concatenate([centre, matrix[np.triu_indices(3)]]) for centre, matrix in surface]
+    return np.concatenate([header.ravel(), *pieces])
+
+
+def ratios(moments: Floats) -> tuple[Floats, Floats]:
+    """Return 1/I_i and (I_j - I_k)/I_i, cyclic, of principal moments; zeros for a point."""
+    if not np.any(moments):
+        return np.zeros(3), np.zeros(3)
+    a, b, c = moments
+    return 1 / moments, np.array([(b - c) / a, (c - a) / b, (a - b) / c])
+
+
+def spins(system: System, momenta: Floats) -> Floats:
+    """Return the spins of angular momenta (N, n, 3); a point has none."""
+    moments = np.array([body.si.moments for body in system.bodies])
+    return np.asarray(np.divide(momenta, moments, out=np.zeros_like(momenta), where=moments > 0))
+
+
+def matrices(quaternions: Floats) -> Floats:
+    """Return matrices (..., 3, 3) by the formula of the kernels, which shows a length that is not 1."""
+    elements = quaternion_to_matrix.py_func(tuple(np.moveaxis(quaternions, -1, 0)))  # type: ignore[attr-defined]
+    return np.asarray(np.stack(elements, axis=-1).reshape(*quaternions.shape[:-1], 3, 3))

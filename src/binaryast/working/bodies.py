@@ -1,0 +1,76 @@
+"""The working arrays of several bodies, in the layout of ``kernels/bodies/layout.py``."""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from binaryast.kernels.bodies import layout
+from binaryast.kernels.bodies.contact import touching
+from binaryast.kernels.bodies.lgvi import exert
+from binaryast.kernels.bodies.loop import advance
+from binaryast.kernels.bodies.measure import measure
+from binaryast.kernels.pointers import table_of
+from binaryast.state import State
+from binaryast.system import System
+from binaryast.units import Floats
+from binaryast.working.base import Motion, Working, check_gravity, matrices, ratios, spins
+
+
+class WorkingBodies(Working):
+    """Any number of bodies: position, velocity, attitude and angular momentum of each about the barycentre."""
+
+    measure, touching, advance = staticmethod(measure), staticmethod(touching), staticmethod(advance)
+
+    def __init__(self, system: System, state: State) -> None:
+        super().__init__(system, state)
+        self.count = n = len(system.bodies)
+        self.row_size, self.potential_at = layout.row_size_of(n), layout.potential_of(n)
+        self.attraction = table_of([pair.gravity.potential for pair in system.pairs])
+        self.parameters = np.concatenate([pair.parameters for pair in system.pairs])
+        self.constants = constants(system)
+        self.state = np.zeros(layout.size_of(n))
+        self.before = self.state.copy()
+        position, velocity, attitude, spin = state.si
+        moments = np.array([body.si.moments for body in system.bodies])
+        motion = (
+            position - self.origin[0],
+            velocity - self.origin[1],
+            Rotation.from_matrix(attitude.copy()).as_quat(),
+            moments * spin,
+        )
+        self.state[: layout.MOTION * n] = np.concatenate([part.ravel() for part in motion])
+        check_gravity(system, state)
+        exert(self.state, self.constants, self.attraction, self.parameters)
+
+    def from_rows(self, rows: Floats, time: Floats) -> Motion:
+        """Return the inertial motion of all bodies from saved starts of working states at times since the start."""
+        n = self.count
+        position, velocity, quaternion, momentum, potential = np.split(
+            rows, [layout.velocity_of(n), layout.attitude_of(n), layout.momentum_of(n), layout.potential_of(n)], axis=1
+        )
+        return Motion(
+            position=self.moving_origin(time) + position.reshape(-1, n, 3),
+            velocity=self.origin[1] + velocity.reshape(-1, n, 3),
+            attitude=matrices(quaternion.reshape(-1, n, 4)),
+            spin=spins(self.system, momentum.reshape(-1, n, 3)),
+            potential_energy=potential[:, 0].copy(),
+        )
+
+    def momentum_and_torque(self, body: int) -> tuple[Floats, Floats]:
+        """Return a body's angular momentum and the torque on it, both in its own frame."""
+        momentum = layout.momentum_of(self.count) + 3 * body
+        torque = layout.torque_of(self.count) + 3 * body
+        return self.state[momentum : momentum + 3], self.state[torque : torque + 3]
+
+
+def constants(system: System) -> Floats:
+    """Return the constants of several bodies and their pairs."""
+    parts = [np.array([len(system.bodies), len(system.pairs)], dtype=float)]
+    for body in system.bodies:
+        inverse, differences = ratios(body.si.moments)
+        parts.append(np.concatenate([[body.si.mass, body.is_point], inverse, differences]))
+    begin = 0
+    for pair in system.pairs:
+        end = begin + len(pair.parameters)
+        parts.append(np.array([pair.primary, pair.secondary, begin, end], dtype=float))
+        begin = end
+    return np.concatenate(parts)
