@@ -152,9 +152,10 @@ def _trajectory(system: System, state: State, integrator: Integrator, outcome: O
     figures = _figures(system, outcome)
     error = min(figures["max_relative_energy_error"], figures["max_energy_error_over_potential"])
     if error > DOUBTFUL_ENERGY_ERROR:
+        cause = "its tolerances are too loose" if integrator.adaptive else f"a step of {outcome.step:g} s is too large"
         warnings.warn(
-            f"the energy was wrong by {error:.2g} of its size at some step: a step of {outcome.step:g} s "
-            "is too large for what happened, such as a close approach",
+            f"the energy was wrong by {error:.2g} of its size at some step: {cause} for what happened, such as a "
+            "close approach",
             StepWarning,
             stacklevel=3,
         )

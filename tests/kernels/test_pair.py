@@ -3,6 +3,7 @@
 import astropy.units as u
 import numpy as np
 import pytest
+from validation.cases import tumbling_pair, wobbling_pair
 
 import binaryast as ba
 from binaryast import working
@@ -10,7 +11,7 @@ from binaryast.equations.base import Moment
 from binaryast.kernels import loop, status
 from binaryast.kernels.pair import layout, lgvi
 from binaryast.working import Working
-from tests.conftest import attitude_angle, take_steps, tumbling_pair, wobbling_pair
+from tests.conftest import attitude_angle, take_steps
 
 
 def printed(system: ba.System, state: ba.State, h: float, count: int) -> Moment:

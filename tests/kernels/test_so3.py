@@ -1,6 +1,7 @@
 """Rotations: the printed formulas and the quaternions against SciPy, and against each other by hypothesis."""
 
 import math
+from fractions import Fraction
 
 import numpy as np
 from hypothesis import given
@@ -62,7 +63,28 @@ def test_rotate_back_undoes_rotate(f: tuple, g: tuple, v: tuple) -> None:
     np.testing.assert_allclose(relative, np.array(r2).reshape(3, 3).T @ np.array(r1).reshape(3, 3), atol=1e-15)
 
 
-def test_orthogonality_error_is_the_frobenius_norm() -> None:
-    matrix = np.array([[1.0, 2e-3, 0], [0, 1, -1e-3], [3e-3, 0, 1.001]])
-    expected = np.linalg.norm(np.eye(3) - matrix.T @ matrix)
-    assert math.isclose(so3.orthogonality_error(tuple(matrix.ravel())), expected, rel_tol=1e-12)
+def test_rotation_error_is_the_frobenius_norm() -> None:
+    for scale in (1 + 1e-3, 1 - 1e-6, 1 + 1e-9):
+        q = scale * Rotation.random(random_state=5).as_quat()
+        matrix = np.array(so3.quaternion_to_matrix(tuple(q))).reshape(3, 3)
+        expected = np.linalg.norm(np.eye(3) - matrix.T @ matrix)
+        assert math.isclose(so3.rotation_error(tuple(q)), expected, rel_tol=1e-5)
+
+
+def test_the_length_of_a_quaternion_is_seen_to_the_last_digit() -> None:
+    for q in Rotation.random(100, random_state=6).as_quat():
+        exact = 1 - sum(Fraction(float(component)) ** 2 for component in q)
+        assert abs(so3.length_defect(tuple(q)) - exact) < 1e-30
+
+
+def test_nearest_rotation() -> None:
+    r = Rotation.random(random_state=7).as_matrix()
+    off = r + 1e-8 * np.random.default_rng(1).normal(size=(3, 3))
+    left, _, right = np.linalg.svd(off)
+    np.testing.assert_allclose(so3.nearest_rotation(off), left @ right, atol=1e-15)
+
+
+def test_linear_equations() -> None:
+    random = np.random.default_rng(2)
+    matrix, x = random.normal(size=(3, 3)), random.normal(size=3)
+    np.testing.assert_allclose(so3.solve_linear(matrix, matrix @ x), x, rtol=1e-12)

@@ -2,9 +2,10 @@
 
 These are the reference that the production steps are held to: matrices and vectors, plain sums, nothing merged. Each
 function takes ``steps`` steps, changes its variables in place and returns a status. The Lagrangian forms step two
-configurations, k and k+1. Their sums lose digits as the step shrinks: positions are taken from second differences, and
-F from a product of attitudes. The summed forms carry those differences themselves, as one would sum (78) and (79): the
-increment D of the position from k to k+1, and g of (128), S(g) = F J_d - J_d F^T.
+configurations, k and k+1. There F is a product of two attitudes, which round-off takes off SO(3); second differences
+would add that up with the square of the number of steps, so F is taken as the nearest rotation. They still lose digits
+as the step shrinks. The summed forms carry the differences themselves, as one would sum (78) and (79): the increment D
+of the position from k to k+1, and g of (128), S(g) = F J_d - J_d F^T.
 
 A body whose inertia is zero is a point, which does not turn.
 """
@@ -24,7 +25,7 @@ from binaryast.kernels.jit import (
     jit,
     reference,
 )
-from binaryast.kernels.so3 import exp, vee
+from binaryast.kernels.so3 import exp, nearest_rotation, vee
 from binaryast.kernels.status import COMPLETED, NO_ROTATION
 
 _BODIES = (PAIR_POINTERS, ARRAY, PAIR_INDICES, ARRAY, BODY_MATRICES)  # potentials, p, pairs, m, J
@@ -73,7 +74,7 @@ def lagrangian_inertial(
     for _ in range(steps):
         _, dU, M = of_bodies(potentials, p, pairs, next_x, next_R)
         for i in range(len(m)):
-            F = R[i].T @ next_R[i]  # (80)
+            F = nearest_rotation(R[i].T @ next_R[i])  # (80)
             Jd = nonstandard(J[i])
             F, iterations = turn(J[i], vee(Jd @ F - F.T @ Jd) + h**2 * M[i])  # (79)
             if iterations < 0:
@@ -169,8 +170,8 @@ def lagrangian_relative(
     """Take steps of (112)-(117): from configurations k and k+1 to k+1 and k+2."""
     m = m1 * m2 / (m1 + m2)
     for _ in range(steps):
-        F2 = R2.T @ next_R2  # (116)
-        F = F2 @ next_R @ R.T  # (115)
+        F2 = nearest_rotation(R2.T @ next_R2)  # (116)
+        F = nearest_rotation(F2 @ next_R @ R.T)  # (115)
         _, dU, M = of_pair(potentials, 0, p, next_X, next_R)
         JR, next_JR = R @ J1 @ R.T, next_R @ J1 @ next_R.T
         moment = np.cross(next_X, dU) + M

@@ -34,6 +34,13 @@ def solve_linear(matrix: Array, b: Array) -> Array:
     return result
 
 
+@jit(allocates=True)
+def nearest_rotation(matrix: Array) -> Array:
+    """Return the rotation nearest to a matrix that is one but for round-off: Newton's step for its polar factor."""
+    result: Array = 0.5 * matrix @ (3.0 * np.eye(3) - matrix.T @ matrix)
+    return result
+
+
 @jit()
 def rodrigues_coefficients(angle: float) -> tuple[float, float, float, float]:
     """Return sin(t)/t, (1 - cos t)/t^2 and their derivatives divided by t, by series where t is small.
@@ -142,9 +149,31 @@ def log(q: Quaternion) -> Vector:
 
 
 @jit()
-def orthogonality_error(r: Matrix) -> float:
-    """Return the Frobenius norm ||I - R^T R||."""
-    a, b, c = (r[0], r[3], r[6]), (r[1], r[4], r[7]), (r[2], r[5], r[8])
-    da, db, dc = 1.0 - dot(a, a), 1.0 - dot(b, b), 1.0 - dot(c, c)
-    ab, bc, ca = dot(a, b), dot(b, c), dot(c, a)
-    return sqrt(da * da + db * db + dc * dc + 2.0 * (ab * ab + bc * bc + ca * ca))
+def without_square(s: float, error: float, a: float) -> tuple[float, float]:
+    """Return s - a^2 and what rounding took from it so far, exactly: Dekker's product and the fast two-sum."""
+    square = a * a
+    c = 134217729.0 * a  # 2^27 + 1 splits a into halves whose products are exact
+    high = c - (c - a)
+    low = a - high
+    rest = ((high * high - square) + 2.0 * high * low) + low * low
+    t = s - square
+    return t, error + (((s - t) - square) - rest)
+
+
+@jit()
+def length_defect(q: Quaternion) -> float:
+    """Return 1 - |q|^2 of a quaternion that is one long but for round-off, without any of its own."""
+    s, error = without_square(1.0, 0.0, q[3])
+    s, error = without_square(s, error, q[0])
+    s, error = without_square(s, error, q[1])
+    s, error = without_square(s, error, q[2])
+    return s + error
+
+
+@jit()
+def rotation_error(q: Quaternion) -> float:
+    """Return the Frobenius norm ||I - R^T R|| of the matrix of a quaternion (v, w).
+
+    R = I + 2 w S(v) + 2 S(v)^2 gives R^T R - I = 4 (1 - |q|^2) S(v)^2, whose norm is this.
+    """
+    return 4.0 * sqrt(2.0) * (q[0] * q[0] + q[1] * q[1] + q[2] * q[2]) * abs(length_defect(q))

@@ -113,6 +113,10 @@ def spins(system: System, momenta: Floats) -> Floats:
 
 
 def matrices(quaternions: Floats) -> Floats:
-    """Return matrices (..., 3, 3) by the formula of the kernels, which shows a length that is not 1."""
+    """Return the rotations (..., 3, 3) nearest to the matrices of quaternions.
+
+    The formula rounds each element several times; Newton's step for the polar factor leaves one rounding of each.
+    """
     elements = quaternion_to_matrix.py_func(tuple(np.moveaxis(quaternions, -1, 0)))  # type: ignore[attr-defined]
-    return np.asarray(np.stack(elements, axis=-1).reshape(*quaternions.shape[:-1], 3, 3))
+    r = np.stack(elements, axis=-1).reshape(*quaternions.shape[:-1], 3, 3)
+    return np.asarray(r + 0.5 * r @ (np.eye(3) - np.swapaxes(r, -1, -2) @ r))

@@ -2,7 +2,7 @@
 
 from math import inf, sqrt
 
-from binaryast.kernels.arrays import matrix_at, vector_at
+from binaryast.kernels.arrays import matrix_at, quaternion_at, vector_at
 from binaryast.kernels.bodies.layout import (
     INVERSE,
     IS_POINT,
@@ -14,14 +14,14 @@ from binaryast.kernels.bodies.layout import (
     velocity_of,
 )
 from binaryast.kernels.jit import MEASURE, Array, Measures, jit
-from binaryast.kernels.so3 import cross, dot, orthogonality_error, rotate
+from binaryast.kernels.so3 import cross, dot, rotate, rotation_error
 
 
 @jit(MEASURE)
 def measure(state: Array, constants: Array) -> Measures:
     """Return E, pi_T (3) and gamma_T (3) about the barycentre, the largest ||I - R^T R||, the smallest |x_i - x_j|."""
     n = int(constants[0])
-    energy, rotation_error, square = state[potential_of(n)], 0.0, inf
+    energy, largest, square = state[potential_of(n)], 0.0, inf
     l1 = l2 = l3 = p1 = p2 = p3 = 0.0
     for i in range(n):
         body = body_constants(i)
@@ -42,5 +42,5 @@ def measure(state: Array, constants: Array) -> Measures:
         energy += 0.5 * (p[0] * p[0] * inverse[0] + p[1] * p[1] * inverse[1] + p[2] * p[2] * inverse[2])
         spin = rotate(r, p)
         l1, l2, l3 = l1 + spin[0], l2 + spin[1], l3 + spin[2]
-        rotation_error = max(rotation_error, orthogonality_error(r))
-    return energy, l1, l2, l3, p1, p2, p3, rotation_error, sqrt(square)
+        largest = max(largest, rotation_error(quaternion_at(state, attitude_of(n) + 4 * i)))
+    return energy, l1, l2, l3, p1, p2, p3, largest, sqrt(square)

@@ -2,7 +2,7 @@
 
 from math import sqrt
 
-from binaryast.kernels.arrays import matrix_at, vector_at
+from binaryast.kernels.arrays import matrix_at, quaternion_at, vector_at
 from binaryast.kernels.jit import MEASURE, Array, Measures, jit
 from binaryast.kernels.pair.layout import (
     ATTITUDE_1,
@@ -16,7 +16,7 @@ from binaryast.kernels.pair.layout import (
     REDUCED_MASS,
     VELOCITY,
 )
-from binaryast.kernels.so3 import cross, dot, orthogonality_error, rotate
+from binaryast.kernels.so3 import cross, dot, rotate, rotation_error
 
 
 @jit(MEASURE)
@@ -39,6 +39,6 @@ def measure(state: Array, constants: Array) -> Measures:
         0.0,
         0.0,
         0.0,
-        max(orthogonality_error(r2), orthogonality_error(r1)),
+        max(rotation_error(quaternion_at(state, ATTITUDE_2)), rotation_error(quaternion_at(state, ATTITUDE_1))),
         sqrt(dot(x, x)),
     )
