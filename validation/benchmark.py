@@ -1,4 +1,4 @@
-"""What one step costs: ``python -m validation.benchmark``.
+"""What one step costs, of a pair and of several bodies: ``python -m validation.benchmark``.
 
 One core, warm, interleaved, the median of several rounds. Absolute times depend on the machine and its neighbours; the
 ratio to a plain vectorised sum over 256 point pairs, taken in the same rounds, hardly does.
@@ -14,7 +14,7 @@ import numpy as np
 
 import binaryast as ba
 from binaryast import working
-from binaryast.outcome import Watch
+from validation.steps import take_steps
 
 ROUNDS = 15
 
@@ -51,33 +51,43 @@ def steps_of(
 ) -> Callable[[int], None]:
     """Return a function that takes watched steps of a system."""
     w = working.of(system, state, inertial=inertial)
-    kernel = ba.LGVI(h * u.s).kernel(inertial=inertial or len(system.bodies) > 2)
     start = w.state.copy()
-    rows = np.empty((200_000 if save else 1, w.row_size))
 
     def take(count: int) -> None:
         w.state[:] = start
-        watch = Watch()
-        watch.begin(w.measure(w.state, w.constants), 0.0)
-        status = w.advance(
-            kernel,
-            w.measure,
-            w.touching,
-            w.attraction,
-            w.parameters,
-            w.constants,
-            w.surfaces,
-            w.state,
-            w.before,
-            watch.array,
-            h,
-            count,
-            10 if save else count,
-            rows,
-        )
-        assert status == 0
+        take_steps(w, h, count, save=10 if save else 0, touching=True)
 
     return take
+
+
+def swarm(count: int) -> tuple[ba.System, ba.State]:
+    """Return so many ellipsoids far from each other, every pair of them at second degree."""
+    bodies = [ba.RigidBody(str(i), ba.Ellipsoid(50 * u.m, 40 * u.m, 30 * u.m), mass=1e9 * u.kg) for i in range(count)]
+    place = np.stack([np.arange(count) * 5e3, np.arange(count) ** 2 * 1e3, np.arange(count) % 3 * 1e3], axis=1)
+    zero, spin = np.zeros((count, 3)), np.tile([1e-5, 2e-5, 3e-4], (count, 1))
+    return ba.System(bodies), ba.State(place * u.m, zero * u.m / u.s, [np.eye(3)] * count, spin * u.rad / u.s)
+
+
+def scaling() -> None:
+    """Measure steps of several bodies and print what a body and what a pair costs."""
+    counts = (2, 3, 5, 10, 20)
+    jobs = {n: steps_of(*swarm(n), 30.0, inertial=True) for n in counts}
+    best = dict.fromkeys(counts, np.inf)
+    for _ in range(ROUNDS):
+        for n, job in jobs.items():
+            steps = 40_000 // n**2
+            began = time.perf_counter()
+            job(steps)
+            best[n] = min(best[n], (time.perf_counter() - began) / steps * 1e6)
+    pairs = np.array([n * (n - 1) / 2 for n in counts])
+    shares = np.linalg.lstsq(
+        np.stack([np.array(counts), pairs], axis=1) / np.array([best[n] for n in counts])[:, None],
+        np.ones(len(counts)),
+    )[0]
+    print(f"\n{'bodies':>7} {'pairs':>6} {'us, best':>9} {'fit':>8}")
+    for n, count in zip(counts, pairs, strict=True):
+        print(f"{n:7} {count:6.0f} {best[n]:9.3f} {shares @ (n, count):8.3f}")
+    print(f"fit: {shares[0]:.3f} us for each body and {shares[1]:.3f} us for each of the n (n - 1)/2 pairs")
 
 
 def main() -> None:
@@ -106,6 +116,10 @@ def main() -> None:
     for name, values in times.items():
         ratio = statistics.median(value / other for value, other in zip(values, reference, strict=True))
         print(f"{name:44} {statistics.median(values):12.3f} {min(values):10.3f} {ratio:8.2f}")
+    pair, inertial = (times[name] for name in times if name.startswith("LGVI step, second degree"))
+    ratio = statistics.median(two / one for one, two in zip(pair, inertial, strict=True))
+    print(f"inertial frame over relative, median of rounds: {ratio:.2f}")
+    scaling()
 
 
 if __name__ == "__main__":

@@ -315,12 +315,13 @@ def _figures(run: Trajectory, ax: Axes) -> None:
     """Write the figures of the run into an Axes without axes."""
     lines = [
         f"status: {run.status}",
-        f"{run.steps} steps of {run.step.value:g} s",
+        f"{run.steps} steps of {run.step.value:g} s" + (" on average" if run.integrator.adaptive else ""),
         "",
         "largest errors, over every step:",
         f"  energy            {run.max_relative_energy_error:.2e} |E0|",
         f"                    {run.max_energy_error_over_potential:.2e} |U0|",
         f"  angular momentum  {run.max_relative_angular_momentum_error:.2e}",
+        f"  linear momentum   {run.max_relative_linear_momentum_error:.2e}",
         f"  rotation          {run.max_rotation_error:.2e}",
         "",
         f"closest approach    {run.closest_approach.value:.6g} m",

@@ -75,7 +75,8 @@ class Trajectory(Value):
         ``completed``, ``contact``, ``interrupted`` or ``failed``; ``message`` says more.
     steps, step, wall_time : int, Quantity, Quantity
         Steps taken; the step used, the largest one up to the integrator's that divides ``save_every``, or the run where
-        none is given (a last stretch that ``save_every`` leaves has its own, smaller one); and the time it took.
+        none is given (a last stretch that ``save_every`` leaves has its own, smaller one; of an adaptive integrator,
+        their mean); and the time it took.
     max_relative_energy_error, max_energy_error, max_energy_error_over_potential : float, Quantity, float
         Largest |E - E0| over every step: over |E0|, itself, and over |U0|. Spin energy hides the orbit in the first.
     max_relative_angular_momentum_error, max_relative_linear_momentum_error, max_rotation_error : float
@@ -291,14 +292,16 @@ class Trajectory(Value):
         if self.si.time[0] > 0:
             reach = f"rows from {span(self.si.time[0])} to {reach} of a run"
         speed = f", {self.wall_time.value / self.steps * 1e6:.2f} us each" if self.steps else ""
+        average = " on average" if self.integrator.adaptive else ""
         lines = [
             f"{joined(self.system.names)}: {self.status}" + (f": {self.message}" if self.message else ""),
-            f"  {reach} in {self.steps} steps of {self.step.value:g} s, {len(self)} rows kept; "
+            f"  {reach} in {self.steps} steps of {self.step.value:g} s{average}, {len(self)} rows kept; "
             f"{self.wall_time.value:.2g} s{speed}",
             *self._distances(),
             f"  largest errors: energy {self.max_relative_energy_error:.4e} of |E0| "
             f"({self.max_energy_error_over_potential:.2e} of |U0|), "
-            f"angular momentum {self.max_relative_angular_momentum_error:.1e}, "
+            f"momentum angular {self.max_relative_angular_momentum_error:.1e}, "
+            f"linear {self.max_relative_linear_momentum_error:.1e}, "
             f"rotation {self.max_rotation_error:.1e}",
         ]
         return "\n".join(lines)

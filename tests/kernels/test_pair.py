@@ -4,14 +4,15 @@ import astropy.units as u
 import numpy as np
 import pytest
 from validation.cases import tumbling_pair, wobbling_pair
+from validation.steps import take_steps
 
 import binaryast as ba
 from binaryast import working
 from binaryast.equations.base import Moment
 from binaryast.kernels import loop, status
-from binaryast.kernels.pair import layout, lgvi
+from binaryast.kernels.pair import lgvi
 from binaryast.working import Working
-from tests.conftest import attitude_angle, take_steps
+from tests.conftest import attitude_angle
 
 
 def printed(system: ba.System, state: ba.State, h: float, count: int) -> Moment:
@@ -60,19 +61,6 @@ def test_one_step_is_the_printed_one_to_the_last_digits() -> None:
     found = moment(w, 30.0)
     assert np.linalg.norm(found.x - expected.x) < 1e-15 * np.linalg.norm(expected.x[1] - expected.x[0])
     assert attitude_angle(found.R, expected.R) < 1e-15
-
-
-def test_forward_and_back_returns() -> None:
-    system, state = tumbling_pair()
-    w = working.of(system, state)
-    start = w.state.copy()
-    scale = np.repeat([1200, 0.17, 1, 1e13, 1, 1e9], [3, 3, 4, 3, 4, 3])
-    take_steps(w, 20.0, 1)
-    take_steps(w, -20.0, 1)
-    assert np.abs((w.state - start)[: layout.POTENTIAL] / scale).max() < 1e-13
-    take_steps(w, 20.0, 2000)
-    take_steps(w, -20.0, 2000)
-    assert np.abs((w.state - start)[: layout.POTENTIAL] / scale).max() < 1e-11
 
 
 def test_the_state_is_untouched_where_a_step_has_no_solution() -> None:

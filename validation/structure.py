@@ -1,0 +1,244 @@
+"""What the variational maps keep, and what a Runge-Kutta method does not: ``python -m validation.structure``.
+
+Symplecticity by a finite-difference Jacobian, reversal, momenta and rotations over 10^5 to 10^7 steps, the paper's
+Figs 5 and 6, and a year of a triple.
+
+A variation of a body is (delta x, eta, delta gamma, delta Pi) with delta R = R S(eta) (16). The canonical form of two
+of them on T*SE(3) is dx1.dgamma2 - dx2.dgamma1 + eta1.dPi2 - eta2.dPi1 + Pi.(eta1 x eta2).
+"""
+
+import warnings
+from collections.abc import Callable
+from typing import NamedTuple
+
+import astropy.units as u
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+import binaryast as ba
+from binaryast import working
+from binaryast.equations.base import Moment
+from validation.cases import four_bodies, tumbling_pair
+from validation.steps import take_steps
+
+Map = Callable[[ba.System, ba.State, float], Moment]
+UNIT_OF_ENERGY = 2 / 9 / ba.constants.G  # J: the paper's of the dumbbells, their reduced mass at 1 m2/s2
+WIDTH = 2e-3  # of the differences, in units of the system
+WEIGHTS = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))  # of order 8: truncation below 1e-15
+
+
+def production(system: ba.System, state: ba.State, h: float, *, inertial: bool) -> Moment:
+    """Take one production step."""
+    w = working.of(system, state, inertial=inertial)
+    take_steps(w, h, 1)
+    motion = w.from_rows(w.state[None, : w.row_size], np.array([h]))
+    return Moment(motion.velocity[0], motion.spin[0], motion.position[0], motion.attitude[0])
+
+
+def printed(system: ba.System, state: ba.State, h: float, *, frame: str) -> Moment:
+    """Take one step as printed."""
+    equations = ba.equations.discrete(system, step=h * u.s, frame=frame)
+    return equations.to_moment(equations.advance(equations.from_state(state)))
+
+
+def euler(system: ba.System, state: ba.State, h: float) -> Moment:
+    """Take one step of Euler's method on (25)-(28), which is not symplectic: the check must see that."""
+    equations = ba.equations.continuous(system, frame="inertial", form="lagrangian")
+    y = equations.from_state(state)
+    moment = equations.to_moment(y + h * equations.rhs(0.0, y))
+    return moment._replace(R=Rotation.from_matrix(moment.R).as_matrix())
+
+
+MAPS: dict[str, Map] = {
+    "the production step of a pair": lambda *a: production(*a, inertial=False),
+    "the production step of bodies": lambda *a: production(*a, inertial=True),
+    "(118)-(127)": lambda *a: printed(*a, frame="relative"),
+    "(93)-(97)": lambda *a: printed(*a, frame="inertial"),
+}
+OF_BODIES = ("the production step of bodies", "(93)-(97)")
+
+
+class Setting(NamedTuple):
+    """A system at a moment, a long step [s], and units of length [m] and time [s] that make all of order one."""
+
+    system: ba.System
+    state: ba.State
+    h: float
+    length: float
+    time: float
+
+
+def settings() -> dict[str, Setting]:
+    """Return where symplecticity is looked at."""
+    system, state = ba.catalogue.load("dumbbells")
+    near = ba.propagate(system, state, duration=6 * u.s, integrator=ba.LGVI(1e-3 * u.s))[-1]
+    return {
+        "dumbbells": Setting(system, near, 0.02, 1.0, 1.0),
+        "a tumbling pair": Setting(*tumbling_pair(), 300.0, 1000.0, 5000.0),
+        "four bodies": Setting(*four_bodies(1e10), 300.0, 1000.0, 5000.0),
+    }
+
+
+class Chart:
+    """Variations of a state in units of order one: of length and time, and each body's own of mass and inertia."""
+
+    def __init__(self, s: Setting) -> None:
+        self.length, self.time = s.length, s.time
+        self.m = np.array([body.si.mass for body in s.system.bodies])
+        self.J = np.array([body.si.moments for body in s.system.bodies])
+        self.rigid = self.J[:, 0] > 0
+        self.orbit = self.m * s.length**2 / s.time  # the units of a body's blocks of the canonical form
+        self.spin = np.where(self.rigid, self.J.max(axis=1), 1.0) / s.time
+
+    def varied(self, state: ba.State, z: np.ndarray) -> ba.State:
+        """Return a state with a variation."""
+        dx, eta, dv, dPi = z.reshape(len(self.m), 4, 3).transpose(1, 0, 2)
+        turn = Rotation.from_rotvec(eta * self.rigid[:, None]).as_matrix()
+        dOmega = np.divide(dPi * self.spin[:, None], self.J, out=np.zeros_like(self.J), where=self.J > 0)
+        return ba.State(
+            state.position + dx * self.length * u.m,
+            state.velocity + dv * self.length / self.time * u.m / u.s,
+            state.attitude @ turn,
+            state.spin + dOmega * u.rad / u.s,
+        )
+
+    def variation(self, one: Moment, base: Moment) -> np.ndarray:
+        """Return the variation that leads from one moment to another."""
+        eta = Rotation.from_matrix(np.swapaxes(base.R, -1, -2) @ one.R).as_rotvec()
+        dPi = self.J * (one.Omega - base.Omega) / self.spin[:, None]
+        parts = ((one.x - base.x) / self.length, eta, (one.v - base.v) * self.time / self.length, dPi)
+        return np.stack(parts, axis=1).ravel()
+
+    def form(self, Omega: np.ndarray) -> np.ndarray:
+        """Return the matrix of the canonical form where the bodies spin so."""
+        result = np.zeros((12 * len(self.m), 12 * len(self.m)))
+        one = np.eye(3)
+        for i in range(len(self.m)):
+            Pi = self.J[i] * Omega[i] / self.spin[i]
+            block = np.zeros((12, 12))
+            block[0:3, 6:9], block[6:9, 0:3] = self.orbit[i] * one, -self.orbit[i] * one
+            block[3:6, 9:12], block[9:12, 3:6] = self.spin[i] * one, -self.spin[i] * one
+            block[3:6, 3:6] = self.spin[i] * np.array([[0, Pi[2], -Pi[1]], [-Pi[2], 0, Pi[0]], [Pi[1], -Pi[0], 0]])
+            result[12 * i : 12 * i + 12, 12 * i : 12 * i + 12] = block
+        return result
+
+
+def symplectic_defect(step: Map, s: Setting) -> float:
+    """Return the largest element of D^T W' D - W, in the units of the two variables that it belongs to."""
+    chart = Chart(s)
+    base = step(s.system, s.state, s.h)
+    free = np.repeat(np.stack([np.full_like(chart.rigid, True), chart.rigid] * 2, axis=1).ravel(), 3)
+    columns = []
+    for k in np.flatnonzero(free):
+        z, column = np.zeros(len(free)), np.zeros(len(free))
+        for multiple, weight in WEIGHTS:
+            z[k] = multiple * WIDTH
+            ahead, behind = (step(s.system, chart.varied(s.state, sign * z), s.h) for sign in (1, -1))
+            column += weight * (chart.variation(ahead, base) - chart.variation(behind, base)) / WIDTH
+        columns.append(column)
+    jacobian = np.array(columns).T
+    before, after = chart.form(s.state.si.spin)[np.ix_(free, free)], chart.form(base.Omega)
+    unit = np.sqrt(np.repeat(np.stack([chart.orbit, chart.spin] * 2, axis=1).ravel(), 3)[free])
+    return float(np.abs((jacobian.T @ after @ jacobian - before) / np.outer(unit, unit)).max())
+
+
+def reversal_error(system: ba.System, state: ba.State, h: float, *, inertial: bool, count: int = 1) -> float:
+    """Return how far some steps forward and as many back lead away: of distance, speed, radian and spin."""
+    w = working.of(system, state, inertial=inertial)
+    start = w.from_rows(w.state[None, : w.row_size], np.zeros(1))
+    take_steps(w, h, count)
+    take_steps(w, -h, count)
+    end = w.from_rows(w.state[None, : w.row_size], np.zeros(1))
+    return max(float(np.abs(one - two).max() / np.abs(two).max()) for one, two in zip(end[:4], start[:4], strict=True))
+
+
+class Kept(NamedTuple):
+    """Over some steps: energy and angular momentum relative, linear momentum over sum m |v|, rotation error."""
+
+    energy: float
+    angular: float
+    linear: float
+    rotation: float
+    rotation_of_rows: float
+
+
+def kept(name: str, step: float, count: int, frame: str | None = None) -> Kept:
+    """Return what a run of a catalogue entry keeps."""
+    run = ba.propagate(
+        *ba.catalogue.load(name), duration=count * step * u.s, integrator=ba.LGVI(step * u.s, frame=frame)
+    )
+    return Kept(
+        run.max_relative_energy_error,
+        run.max_relative_angular_momentum_error,
+        run.max_relative_linear_momentum_error,
+        run.max_rotation_error,
+        float(run.rotation_error.max()),
+    )
+
+
+def figure_5() -> tuple[float, float]:
+    """Return the largest |E - E0| in the paper's units and ||I - R^T R|| of (118)-(127) as printed, to t = 15."""
+    system, state = ba.catalogue.load("dumbbells")
+    equations = ba.equations.discrete(system, step=2e-4 * u.s, frame="relative", form="hamiltonian")
+    y = equations.from_state(state)
+    start = equations.invariants(y)
+    energy_error = rotation_error = 0.0
+    for _ in range(15_000):  # a look at every fifth step
+        y = equations.advance(y, 5)
+        now = equations.invariants(y)
+        energy_error = max(energy_error, abs(now.energy - start.energy))
+        rotation_error = max(rotation_error, now.rotation_error)
+    return energy_error / UNIT_OF_ENERGY, rotation_error
+
+
+def figure_6() -> tuple[ba.Trajectory, ba.Trajectory]:
+    """Return a loose Runge-Kutta run of (63)-(70) to t = 15, and a variational one with as many evaluations of U."""
+    system, state = ba.catalogue.load("dumbbells")
+    loose = ba.RungeKutta(method="RK45", rtol=1e-4, atol=1e-6)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ba.errors.StepWarning)  # that it failed is the point
+        failed = ba.propagate(system, state, duration=15 * u.s, integrator=loose)
+    evaluations = 6 * failed.steps  # at the least: six to a step of theirs, one to a step of ours
+    step = 15 / evaluations * (1 + 1e-6) * u.s
+    return failed, ba.propagate(system, state, duration=15 * u.s, integrator=ba.LGVI(step))
+
+
+def sn263() -> ba.Trajectory:
+    """Return a year of the triple."""
+    e = ba.catalogue.entry("sn263")
+    return ba.propagate(e.system, e.state, duration=e.duration, integrator=e.integrator, save_every=e.save_every)
+
+
+def main() -> None:
+    """Print all of it."""
+    print("symplectic: largest element of D^T W' D - W")
+    for where, setting in settings().items():
+        for name, step in MAPS.items():
+            if len(setting.system.bodies) == 2 or name in OF_BODIES:
+                print(f"  {where}, {name}: {symplectic_defect(step, setting):.1e}")
+    print(f"  dumbbells, Euler's method, to compare: {symplectic_defect(euler, settings()['dumbbells']):.1e}")
+    print("reversal: one step forward and back, relative")
+    for where, (system, state), h in (("tumbling pair", tumbling_pair(), 20.0), ("four bodies", four_bodies(), 20.0)):
+        for inertial in (False, True):
+            if len(system.bodies) == 2 or inertial:
+                error = reversal_error(system, state, h, inertial=inertial)
+                print(f"  {where}, {'inertial' if inertial else 'relative'}: {error:.1e}")
+    print("kept by production runs: energy, angular and linear momentum, rotation at every step and in saved rows")
+    for name, step, frame in (("didymos", 40.0, None), ("didymos", 40.0, "inertial"), ("sn263", 60.0, None)):
+        for count in (10**5, 10**6, 10**7):
+            figures = " ".join(f"{value:.2e}" for value in kept(name, step, count, frame))
+            print(f"  {name}, {frame or 'default'} frame, {count:8} steps of {step:g} s: {figures}")
+    energy, rotation = figure_5()
+    print(
+        f"Fig. 5, (118)-(127) as printed: energy {energy:.4e} (paper 2.6966e-7), rotation {rotation:.2e} (2.8657e-13)"
+    )
+    failed, good = figure_6()
+    for run in (failed, good):
+        figures = f"{run.max_energy_error.value / UNIT_OF_ENERGY:.2e} (paper 1.1246e-2), {run.max_rotation_error:.2e}"
+        print(f"  Fig. 6, {type(run.integrator).__name__}, {run.steps} steps: {figures} (2.2435e-2)")
+    year = sn263()
+    print(year.summary())
+
+
+if __name__ == "__main__":
+    main()
