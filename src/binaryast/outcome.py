@@ -76,8 +76,8 @@ class Outcome:
 
 def contact_message(system: System, pair: int, after: float) -> str:
     """Return what is said of a contact."""
-    touched = system.pairs[pair]
-    return f"{system.names[touched.secondary]} touched {system.names[touched.primary]} within a step of {after:g} s"
+    primary, secondary = (system.names[i] for i in system.pairs[pair][:2])
+    return f"{secondary} touched {primary} in the step that ends at {after:g} s"
 
 
 def interruption_message(after: float) -> str:

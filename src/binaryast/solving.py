@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from binaryast import equations, working
 from binaryast.errors import ContactError, InputError
 from binaryast.integrators import RungeKutta
+from binaryast.kernels.bodies import layout
 from binaryast.outcome import Outcome, Watch, contact_message, interruption_message
 from binaryast.progress import keyboard
 from binaryast.schedule import MOST_ROWS, Segment, schedule
@@ -97,6 +98,9 @@ class SolvedRun:
         if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
             self.ended, self.message = "failed", f"SciPy's solver gave up after {self.elapsed:g} s: {message}"
             return
+        if np.any(np.linalg.det(self.equations.to_moment(solver.y).R) <= 0):
+            self.ended, self.message = "failed", f"an attitude has left SO(3) altogether after {self.elapsed:g} s"
+            return
         before, self.y, self.elapsed = self.y, solver.y.copy(), float(solver.t)
         self.steps += 1
         now = self.equations.invariants(self.y)
@@ -121,7 +125,8 @@ class SolvedRun:
         w = self.working
         w.before[: positions.size] = positions.ravel()
         w.state[: x.size] = x.ravel()
-        w.state[2 * x.size : 2 * x.size + 4 * len(x)] = Rotation.from_matrix(R).as_quat().ravel()
+        attitude = layout.attitude_of(len(x))
+        w.state[attitude : attitude + 4 * len(x)] = Rotation.from_matrix(R).as_quat().ravel()
         touching: int = w.touching(w.state, w.surfaces, w.before)
         return touching
 
