@@ -357,3 +357,36 @@ def test_a_run_is_safe_whatever_happens_to_its_picture(
     assert "the run is in didymos.h5" in captured.err
     assert "completed" in captured.out
     assert files(folder) == ["didymos.h5"]
+
+
+def test_a_triple(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    assert cli.main(["run", "sn263", "--duration", "20d", "--json"]) == 0
+    result = json.loads(capsys.readouterr().out)
+    assert result["names"] == ["Alpha", "Gamma", "Beta"]
+    assert result["mutual_period"] is None
+    assert result["periods"]["Gamma"] == pytest.approx(16.35 * 3600, rel=0.01)
+    assert result["periods"]["Beta"] == pytest.approx(149.4 * 3600, rel=0.02)
+    assert files(folder) == ["sn263.h5", "sn263.png"]
+    assert cli.main(["run", "sn263.h5", "--duration", "5d", "--no-picture"]) == 0
+    assert "period of Gamma 16.3" in capsys.readouterr().out
+    assert cli.main(["plot", "sn263.h5", "--kind", "separation", "-o", "distance.png"]) == 0
+    assert cli.main(["show", "sn263"]) == 0
+    shown = capsys.readouterr().out
+    assert "Beta (about Alpha)" in shown
+    assert "Becker" in shown
+
+
+def test_frame_and_integrator(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    arguments = ["--duration", "12h", "--json", "--no-picture", "--force"]
+    separations = []
+    for options in (["--frame", "relative"], ["--frame", "inertial"], ["--integrator", "RungeKutta"]):
+        assert cli.main(["run", "didymos", *options, *arguments]) == 0
+        assert options[1] in json.loads(capsys.readouterr().out)["integrator"]
+        separations.append(ba.Trajectory.read("didymos.h5").separation[-1].value)
+    assert separations[0] == pytest.approx(separations[1], rel=1e-13)
+    assert separations[0] == pytest.approx(separations[2], rel=1e-6)
+    assert cli.main(["run", "sn263", "--frame", "relative", *arguments]) == 2
+    assert "for a pair" in json.loads(capsys.readouterr().out)["message"]
+    assert cli.main(["run", "didymos", "--integrator", "RungeKutta", *arguments]) == 0
+    assert cli.main(["run", "didymos.h5", "--integrator", "LGVI", "--frame", "inertial", *arguments]) == 2
+    assert "--step" in capsys.readouterr().err

@@ -139,3 +139,48 @@ def test_files_that_are_not_there_or_not_text(tmp_path: Path) -> None:
 def test_unknown_names_get_the_nearest() -> None:
     with pytest.raises(InputError, match="did you mean 'didymos'"):
         ba.catalogue.load("didimos")
+
+
+SN263 = ba.catalogue.text("sn263")
+PAIRS = """[[gravity.pairs]]
+bodies = ["Gamma", "Alpha"]
+type = "PointMass"
+"""
+
+
+def test_gravity_by_pairs() -> None:
+    text = SN263.replace('type = "SecondDegree"\n', 'type = "SecondDegree"\n' + PAIRS)
+    system = loads(text, name="mine", where="mine.toml").system
+    assert [type(pair.gravity).__name__ for pair in system.pairs] == ["PointMass", "SecondDegree", "SecondDegree"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('type = "SecondDegree"', 'type = "SecondDegree"\npairs = 1', "gravity.pairs: expected tables"),
+        ('type = "SecondDegree"\n', f'type = "SecondDegree"\n{PAIRS}'.replace("Gamma", "Delta"), "is no pair"),
+        ('type = "SecondDegree"\n', f'type = "SecondDegree"\n{PAIRS}'.replace("bodies", "names"), "bodies is missing"),
+        ('about = "inner"', 'about = "outer"', "expected one of primary, inner"),
+        ('semi_major_axis = "3.804 km"', "semi_major_axis = 3.804", r"state.orbits\[0\].semi_major_axis"),
+        ("eccentricity = 0.016", "excentricity = 0.016", "did you mean 'eccentricity'"),
+        ("eccentricity = 0.016", "eccentricity = 1.016", "0 <= e < 1"),
+        ('Alpha = ["67.81 deg"', 'Alfa = ["67.81 deg"', "did you mean 'Alpha'"),
+        ('["3.4256 h", "synchronous", "13.43 h"]', '["3.4256 h", "synchronous"]', "expected a list of 3"),
+        ("[[state.orbits]]", "[[state.orbit]]", "orbits: expected a table"),
+        ('type = "from_orbits"', 'type = "circular_orbit"', "unknown key"),
+    ],
+)
+def test_one_line_for_each_mistake_of_several_bodies(old: str, new: str, says: str) -> None:
+    assert old in SN263
+    with pytest.raises(ScenarioError, match=says) as caught:
+        loads(SN263.replace(old, new), name="mine", where="mine.toml")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_point_in_a_file() -> None:
+    text = SN263.replace('{ type = "Ellipsoid", a = "382.8 m", b = "519.0 m", c = "328.2 m" }', '{ type = "Point" }')
+    with pytest.raises(ScenarioError, match="Beta is a point"):
+        loads(text, name="mine", where="mine.toml")
+    scenario = loads(text.replace('"13.43 h"', '"none"'), name="mine", where="mine.toml")
+    run = ba.propagate(scenario.system, scenario.state, duration=1 * u.h, integrator=scenario.integrator)
+    assert run.status == "completed"

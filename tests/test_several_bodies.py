@@ -253,6 +253,7 @@ def test_poles_by_name() -> None:
         ({"orbits": [1, 2]}, "expected ba.Orbit"),
         ({"spins": ["synchronous"]}, "spins: expected a list of 3"),
         ({"spins": [None, None, None]}, r"spins\[0\]"),
+        ({"spins": ["none", "synchronous", "synchronous"]}, r"spins\[0\]"),
         ({"poles": [1, 2]}, "poles: expected a table"),
         ({"poles": {"X": [0, 0, 1]}}, "is no body"),
     ],

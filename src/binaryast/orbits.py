@@ -10,6 +10,7 @@ import numpy as np
 from astropy.units import Quantity
 from scipy.spatial.transform import Rotation
 
+from binaryast.bodies import RigidBody
 from binaryast.errors import InputError, UnitError
 from binaryast.system import System
 from binaryast.units import Floats, brief, numbers, to_si
@@ -265,12 +266,16 @@ def _is_synchronous(spin: Any) -> bool:
 def _spin_vectors(system: System, spins: Sequence[Any], rates: Sequence[float]) -> Floats:
     """Return the spins (n, 3) in the body frames [rad/s]; ``rates`` are those of the orbits."""
     _one_each(spins, len(system.bodies), "spins", "one for each body, primary first")
-    return np.array(
-        [
-            np.zeros(3) if body.is_point and spin is None else _spin_vector(spin, f"spins[{i}]", rates[i])
-            for i, (body, spin) in enumerate(zip(system.bodies, spins, strict=True))
-        ]
-    )
+    return np.array([_spin_of(system.bodies[i], spins[i], f"spins[{i}]", rates[i]) for i in range(len(spins))])
+
+
+def _spin_of(body: RigidBody, spin: Any, name: str, rate: float) -> Floats:
+    """Return the spin of a body, which a point has not."""
+    if not body.is_point:
+        return _spin_vector(spin, name, rate)
+    if spin is None or (isinstance(spin, str) and spin == "none"):
+        return np.zeros(3)
+    raise InputError(f'{name}={brief(spin)}: {body.name} is a point, which does not turn: expected None or "none"')
 
 
 def _spin_vector(spin: Any, name: str, rate: float) -> Floats:

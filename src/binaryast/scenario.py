@@ -239,7 +239,7 @@ def _argument(value: Any, key: str, where: str) -> Any:
         return value
     if isinstance(value, list):
         raise InputError(f'{where}: expected one text with a unit such as "{example}", got {brief(value)}')
-    if value == "synchronous":
+    if value == "synchronous" or (value == "none" and where.startswith("state.spins")):
         return value
     return parse(_text(value, where, example.lstrip("[0123456789., ]")), where, example)
 

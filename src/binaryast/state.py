@@ -114,7 +114,7 @@ class State(Value):
             Of the orbit: three numbers, or right ascension and declination (two angles); the inertial z by default.
         spins : sequence
             For each body, primary first: a period (time) or a rate (angle over time) about its z axis, a vector of
-            three rates in the body's frame, or ``"synchronous"``.
+            three rates in the body's frame, or ``"synchronous"``; for a point None, or ``"none"``.
         epoch : astropy.time.Time, optional
             Of the state.
         frame : str, optional
@@ -239,7 +239,7 @@ class State(Value):
         pole : array-like or Quantity, optional
             Of the plane that inclinations are counted from; see `circular_orbit`.
         spins : sequence
-            As for `circular_orbit`, one for each body; None for a point. ``"synchronous"`` is the mean motion.
+            As for `circular_orbit`, one for each body. ``"synchronous"`` is the mean motion.
         poles : mapping, optional
             Of bodies by name, each as ``pole``: such a body starts with z along it instead of its orbit's.
         epoch, frame

@@ -10,6 +10,7 @@ from binaryast.equations.base import Equations, Moment
 from binaryast.equations.continuous import from_momenta, from_relative_momenta
 from binaryast.errors import InputError, StepError
 from binaryast.kernels import discrete
+from binaryast.kernels.derivatives import derivatives
 from binaryast.kernels.status import COMPLETED, NO_ROTATION
 from binaryast.system import System
 from binaryast.units import Floats, brief, quantity, to_si
@@ -191,15 +192,8 @@ class DiscreteEquations(Equations):
         if self.frame == "relative":
             values = np.array(self.system.attraction(x, R)[1:])
             return values[:3], values[3:]
-        dU, M = np.zeros_like(x), np.zeros_like(x)
-        for pair in self.system.pairs:
-            two, one = pair.primary, pair.secondary
-            X, relative = R[two].T @ (x[one] - x[two]), R[two].T @ R[one]  # (34), (35)
-            values = np.array(self.system.attraction(X, relative, pair)[1:])
-            dU[one] += R[two] @ values[:3]
-            dU[two] -= R[two] @ values[:3]
-            M[one] -= relative.T @ values[3:]
-            M[two] += np.cross(X, values[:3]) + values[3:]
+        potentials, p, pairs = self._everything[:3]
+        _, dU, M = derivatives(potentials, p, pairs, np.ascontiguousarray(x), np.ascontiguousarray(R))
         return dU, M
 
 

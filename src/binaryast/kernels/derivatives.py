@@ -1,8 +1,9 @@
 """The potential and its derivatives as arrays, for the equations as printed."""
 
 import numpy as np
+from numba import types
 
-from binaryast.kernels.jit import Array, jit
+from binaryast.kernels.jit import ARRAY, BODY_MATRICES, PAIR_INDICES, PAIR_POINTERS, ROWS, Array, jit, reference
 from binaryast.kernels.pointers import pointer_at
 
 # A row of ``pairs``: index of the primary and of the secondary, where the pair's parameters begin and end.
@@ -34,3 +35,9 @@ def of_bodies(potentials: Array, p: Array, pairs: Array, x: Array, R: Array) -> 
         M[one] -= Rk.T @ Mk  # (56) in the secondary's own frame
         M[two] += np.cross(X, dUk) + Mk  # (57)
     return U, dU, M
+
+
+@reference(types.Tuple((types.float64, ROWS, ROWS))(PAIR_POINTERS, ARRAY, PAIR_INDICES, ROWS, BODY_MATRICES))
+def derivatives(potentials: Array, p: Array, pairs: Array, x: Array, R: Array) -> tuple[float, Array, Array]:
+    """Return what `of_bodies` does, to Python."""
+    return of_bodies(potentials, p, pairs, x, R)
