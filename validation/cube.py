@@ -12,7 +12,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import binaryast as ba
-from binaryast.equations.base import Moment
+from binaryast.equations.legendre import Snapshot
 from validation.cases import four_bodies, wobbling_pair
 
 STEPS = 10_000  # of the discrete forms that are compared with each other
@@ -53,25 +53,25 @@ CASES = ("dumbbells", "ellipsoids", "four bodies")
 
 
 @cache
-def stepped(name: str, frame: str, form: str, summed: bool) -> Moment:
+def stepped(name: str, frame: str, form: str, summed: bool) -> Snapshot:
     """Return where a discrete form is after `STEPS` steps."""
     system, state, step, _, _ = case(name)
     equations = ba.equations.discrete(system, step=step * u.s, frame=frame, form=form, summed=summed)
-    return equations.to_moment(equations.advance(equations.from_state(state), STEPS))
+    return equations.snapshot(equations.advance(equations.from_state(state), STEPS))
 
 
 @cache
-def flowed(name: str, frame: str, form: str, tolerance: float = TOLERANCE) -> Moment:
+def flowed(name: str, frame: str, form: str, tolerance: float = TOLERANCE) -> Snapshot:
     """Return where a continuous form is at the end, by SciPy's DOP853."""
     system, state, _, end, _ = case(name)
     equations = ba.equations.continuous(system, frame=frame, form=form)
     y = equations.from_state(state)
     scales = tolerance * equations.scales(y)
     solution = solve_ivp(equations.rhs, (0, end), y, method="DOP853", rtol=tolerance, atol=scales)
-    return equations.to_moment(solution.y[:, -1])
+    return equations.snapshot(solution.y[:, -1])
 
 
-def difference(one: Moment, two: Moment) -> Difference:
+def difference(one: Snapshot, two: Snapshot) -> Difference:
     """Return how far two moments are apart, the second being the measure."""
     spins = np.linalg.norm(two.Omega, axis=1)
     spin = np.linalg.norm(one.Omega - two.Omega, axis=1)[spins > 0] / spins[spins > 0]
@@ -93,7 +93,7 @@ def slopes(name: str, frame: str, form: str) -> Difference:
         equations = ba.equations.discrete(
             system, step=end / count * u.s, frame=frame, form=form, summed=form == "lagrangian"
         )
-        errors.append(difference(equations.to_moment(equations.advance(equations.from_state(state), count)), flow))
+        errors.append(difference(equations.snapshot(equations.advance(equations.from_state(state), count)), flow))
     return Difference(*np.log2(np.divide(errors[-2], errors[-1])))
 
 

@@ -17,35 +17,35 @@ from scipy.spatial.transform import Rotation
 
 import binaryast as ba
 from binaryast import working
-from binaryast.equations.base import Moment
+from binaryast.equations.legendre import Snapshot
 from validation.cases import four_bodies, tumbling_pair
 from validation.steps import take_steps
 
-Map = Callable[[ba.System, ba.State, float], Moment]
+Map = Callable[[ba.System, ba.State, float], Snapshot]
 UNIT_OF_ENERGY = 2 / 9 / ba.constants.G  # J: the paper's of the dumbbells, their reduced mass at 1 m2/s2
 WIDTH = 2e-3  # of the differences, in units of the system
 WEIGHTS = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))  # of order 8: truncation below 1e-15
 
 
-def production(system: ba.System, state: ba.State, h: float, *, inertial: bool) -> Moment:
+def production(system: ba.System, state: ba.State, h: float, *, inertial: bool) -> Snapshot:
     """Take one production step."""
     w = working.of(system, state, inertial=inertial)
     take_steps(w, h, 1)
     motion = w.from_rows(w.state[None, : w.row_size], np.array([h]))
-    return Moment(motion.velocity[0], motion.spin[0], motion.position[0], motion.attitude[0])
+    return Snapshot(motion.velocity[0], motion.spin[0], motion.position[0], motion.attitude[0])
 
 
-def printed(system: ba.System, state: ba.State, h: float, *, frame: str) -> Moment:
+def printed(system: ba.System, state: ba.State, h: float, *, frame: str) -> Snapshot:
     """Take one step as printed."""
     equations = ba.equations.discrete(system, step=h * u.s, frame=frame)
-    return equations.to_moment(equations.advance(equations.from_state(state)))
+    return equations.snapshot(equations.advance(equations.from_state(state)))
 
 
-def euler(system: ba.System, state: ba.State, h: float) -> Moment:
+def euler(system: ba.System, state: ba.State, h: float) -> Snapshot:
     """Take one step of Euler's method on (25)-(28), which is not symplectic: the check must see that."""
     equations = ba.equations.continuous(system, frame="inertial", form="lagrangian")
     y = equations.from_state(state)
-    moment = equations.to_moment(y + h * equations.rhs(0.0, y))
+    moment = equations.snapshot(y + h * equations.rhs(0.0, y))
     return moment._replace(R=Rotation.from_matrix(moment.R).as_matrix())
 
 
@@ -102,7 +102,7 @@ class Chart:
             state.spin + dOmega * u.rad / u.s,
         )
 
-    def variation(self, one: Moment, base: Moment) -> np.ndarray:
+    def variation(self, one: Snapshot, base: Snapshot) -> np.ndarray:
         """Return the variation that leads from one moment to another."""
         eta = Rotation.from_matrix(np.swapaxes(base.R, -1, -2) @ one.R).as_rotvec()
         dPi = self.J * (one.Omega - base.Omega) / self.spin[:, None]

@@ -98,7 +98,7 @@ class SolvedRun:
         if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
             self.ended, self.message = "failed", f"SciPy's solver gave up after {self.elapsed:g} s: {message}"
             return
-        if np.any(np.linalg.det(self.equations.to_moment(solver.y).R) <= 0):
+        if np.any(np.linalg.det(self.equations.snapshot(solver.y).R) <= 0):
             self.ended, self.message = "failed", f"an attitude has left SO(3) altogether after {self.elapsed:g} s"
             return
         before, self.y, self.elapsed = self.y, solver.y.copy(), float(solver.t)
@@ -120,8 +120,8 @@ class SolvedRun:
 
     def _touching(self, before: Floats, after: Floats) -> int:
         """Return which pair touches within a step, counted from 1, or 0."""
-        positions = self.equations.to_moment(before).x
-        _, _, x, R = self.equations.to_moment(after)
+        positions = self.equations.snapshot(before).x
+        _, _, x, R = self.equations.snapshot(after)
         w = self.working
         w.before[: positions.size] = positions.ravel()
         w.state[: x.size] = x.ravel()
@@ -132,7 +132,7 @@ class SolvedRun:
 
     def outcome(self) -> Outcome:
         """Return what has been computed."""
-        moments = [self.equations.to_moment(row) for row in self.rows]
+        moments = [self.equations.snapshot(row) for row in self.rows]
         motion = Motion(
             position=np.array([moment.x for moment in moments]),
             velocity=np.array([moment.v for moment in moments]),

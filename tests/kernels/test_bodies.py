@@ -8,7 +8,7 @@ from validation.steps import take_steps
 
 import binaryast as ba
 from binaryast import working
-from binaryast.equations.base import Moment
+from binaryast.equations.legendre import Snapshot
 from binaryast.kernels import loop, status
 from binaryast.kernels.bodies import layout, lgvi
 from binaryast.kernels.bodies import loop as bodies_loop
@@ -16,9 +16,9 @@ from binaryast.working import Working
 from tests.conftest import attitude_angle
 
 
-def moment(w: Working) -> Moment:
+def moment(w: Working) -> Snapshot:
     motion = w.from_rows(w.state[None, : w.row_size], np.zeros(1))
-    return Moment(motion.velocity[0], motion.spin[0], motion.position[0], motion.attitude[0])
+    return Snapshot(motion.velocity[0], motion.spin[0], motion.position[0], motion.attitude[0])
 
 
 @pytest.mark.parametrize(
@@ -34,7 +34,7 @@ def test_it_is_the_printed_map(make, h: float, count: int, bound: float) -> None
     """Position, velocity, attitude and spin of every body agree to round-off and its growth."""
     system, state = make()
     equations = ba.equations.discrete(system, step=h * u.s, frame="inertial")
-    expected = equations.to_moment(equations.advance(equations.from_state(state), count))
+    expected = equations.snapshot(equations.advance(equations.from_state(state), count))
     w = working.of(system, state, inertial=True)
     take_steps(w, h, count)
     found = moment(w)

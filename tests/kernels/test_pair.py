@@ -8,23 +8,23 @@ from validation.steps import take_steps
 
 import binaryast as ba
 from binaryast import working
-from binaryast.equations.base import Moment
+from binaryast.equations.legendre import Snapshot
 from binaryast.kernels import loop, status
 from binaryast.kernels.pair import lgvi
 from binaryast.working import Working
 from tests.conftest import attitude_angle
 
 
-def printed(system: ba.System, state: ba.State, h: float, count: int) -> Moment:
+def printed(system: ba.System, state: ba.State, h: float, count: int) -> Snapshot:
     """Take steps of (118)-(127) as printed."""
     equations = ba.equations.discrete(system, step=h * u.s, frame="relative", form="hamiltonian")
-    return equations.to_moment(equations.advance(equations.from_state(state), count))
+    return equations.snapshot(equations.advance(equations.from_state(state), count))
 
 
-def moment(w: Working, time: float) -> Moment:
+def moment(w: Working, time: float) -> Snapshot:
     """Return where the working state is now."""
     motion = w.from_rows(w.state[None, : w.row_size], np.array([time]))
-    return Moment(motion.velocity[0], motion.spin[0], motion.position[0], motion.attitude[0])
+    return Snapshot(motion.velocity[0], motion.spin[0], motion.position[0], motion.attitude[0])
 
 
 PAIRS = {"tumbling": tumbling_pair, "wobbling": wobbling_pair}

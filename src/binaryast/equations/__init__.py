@@ -98,4 +98,4 @@ def discrete(
     >>> print(equations.unpack(y)["X"].round(6))
     [0.655894 0.743265 0.06779 ]
     """
-    return DiscreteEquations(system, step, frame, form, summed=summed)
+    return DiscreteEquations(system, step, frame, form, summed)

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from astropy.time import Time
 
+from binaryast.equations.legendre import Inertial, Relative, Snapshot
 from binaryast.errors import InputError, did_you_mean
 from binaryast.state import State
 from binaryast.system import System
@@ -15,15 +16,6 @@ from binaryast.units import Floats, brief, quantity
 
 FORMS = ("lagrangian", "hamiltonian")
 FRAMES = ("inertial", "relative")
-
-
-class Moment(NamedTuple):
-    """All bodies at one moment as plain SI floats: v (n, 3), Omega (n, 3), x (n, 3), R (n, 3, 3) of (25)-(28)."""
-
-    v: Floats
-    Omega: Floats
-    x: Floats
-    R: Floats
 
 
 class Invariants(NamedTuple):
@@ -87,16 +79,16 @@ class Equations(ABC):
                 f"equations: frame='relative' is for a pair, got {len(system.bodies)} bodies: take frame='inertial'"
             )
         self.system, self.frame, self.form = system, frame, form
-        self.m = np.array([body.si.mass for body in system.bodies])
-        self.J = np.array([np.diag(body.si.moments) for body in system.bodies])
-        self._everything = _arguments(system, self.m, self.J)
-        self._arguments: tuple[Any, ...]
-        if frame == "relative":
-            self.m1, self.m2, self.J1, self.J2 = float(self.m[1]), float(self.m[0]), self.J[1], self.J[0]
-            self.reduced_mass = system.reduced_mass
-            self._arguments = (*self._everything[:2], self.m1, self.m2, self.J1, self.J2)
-        else:
-            self._arguments = self._everything
+        self._made_of: tuple[Any, ...] = (system, frame, form)
+        self._inertial = Inertial(system)
+        self._frame = Relative(system) if frame == "relative" else self._inertial
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), self._made_of  # compiled functions have other addresses in another process
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.system.names)
+        return f"<{type(self).__name__} {self.numbers}, {self.frame} {self.form} form, of {names}>"
 
     @cached_property
     def _places(self) -> dict[str, tuple[slice, tuple[int, ...]]]:
@@ -120,10 +112,18 @@ class Equations(ABC):
         InputError
             Where the array has another length.
         """
-        y = np.ascontiguousarray(y, dtype=np.float64)
-        if y.shape != (self.size,):
-            raise InputError(f"y: expected a flat array of {self.size} numbers for {self.numbers}, got {y.shape}")
+        y = self._checked(y)
         return {name: y[place].reshape(shape) for name, (place, shape) in self._places.items()}
+
+    def _checked(self, y: Any) -> Floats:
+        """Return ``y`` as a flat array that kernels take: of floats, its own where it was read-only."""
+        try:
+            array: Floats = np.require(y, np.float64, ["C", "W"])
+        except (TypeError, ValueError):
+            raise InputError(f"y: expected a flat array of numbers, got {brief(repr(y))}") from None
+        if array.shape != (self.size,):
+            raise InputError(f"y: expected a flat array of {self.size} numbers for {self.numbers}, got {array.shape}")
+        return array
 
     def pack(self, **variables: Any) -> Floats:
         """Return a flat array of variables given by name."""
@@ -146,7 +146,7 @@ class Equations(ABC):
         if not isinstance(state, State) or len(state.si.position) != len(self.system.bodies):
             raise InputError(f"state: expected a ba.State of {len(self.system.bodies)} bodies, got {brief(state)}")
         position, velocity, attitude, spin = state.si
-        return self._from_moment(Moment(velocity, spin, position, attitude))
+        return self._from_snapshot(Snapshot(velocity, spin, position, attitude))
 
     def to_state(self, y: Any, *, epoch: Time | None = None, frame: str = "local") -> State:
         """Return the state of a flat array of variables.
@@ -156,81 +156,25 @@ class Equations(ABC):
         InputError
             Where an attitude has left SO(3) by more than 1e-9, as those of the continuous equations do in time.
         """
-        v, Omega, x, R = self.to_moment(y)
+        v, Omega, x, R = self.snapshot(y)
         return State(quantity(x, "m"), quantity(v, "m / s"), R, quantity(Omega, "rad / s"), epoch, frame)
 
     def invariants(self, y: Any) -> Invariants:
         """Return what should be conserved, as it is in ``y``; attitudes need not be rotations."""
         from binaryast.kernels.invariants import invariants
 
-        arrays = (np.ascontiguousarray(array) for array in self.to_moment(y))
-        U, measures = invariants(*self._everything, *arrays)
+        arrays = (np.array(array) for array in self.snapshot(y))
+        U, measures = invariants(*self._inertial.arguments, *arrays)
         return Invariants(measures[0], U, np.array(measures[1:4]), np.array(measures[4:7]), measures[7], measures[8])
 
-    def to_moment(self, y: Any) -> Moment:
+    def snapshot(self, y: Any) -> Snapshot:
         """Return positions, velocities, attitudes and spins of all bodies as floats, whatever the attitudes are."""
-        return self._to_moment(**self.unpack(y))
+        return self._to_snapshot(**self.unpack(y))
 
     @abstractmethod
-    def _from_moment(self, moment: Moment) -> Floats:
-        """Return the variables of a moment: the Legendre transform."""
+    def _from_snapshot(self, at: Snapshot) -> Floats:
+        """Return the variables of a snapshot: the Legendre transform."""
 
     @abstractmethod
-    def _to_moment(self, **variables: Floats) -> Moment:
-        """Return the moment of variables: the inverse Legendre transform."""
-
-    def relative(self, moment: Moment) -> dict[str, Floats]:
-        """Return (34)-(39) and the momenta below (62), with v2, x2 and R2."""
-        v, Omega, x, R = moment
-        R2 = R[0]
-        relative = R2.T @ R[1]  # (35)
-        V = R2.T @ (v[1] - v[0])  # (36)
-        return {
-            "V": V,
-            "Omega": relative @ Omega[1],  # (37)
-            "Omega2": Omega[0],
-            "Gamma": self.reduced_mass * V,
-            "Pi": relative @ self.J1 @ Omega[1],
-            "Pi2": self.J2 @ Omega[0],
-            "X": R2.T @ (x[1] - x[0]),  # (34)
-            "R": relative,
-            "v2": v[0],
-            "gamma2": self.m2 * v[0],
-            "x2": x[0],
-            "R2": R2,
-        }
-
-
-def from_relative(
-    V: Floats, Omega: Floats, Omega2: Floats, X: Floats, R: Floats, v2: Floats, x2: Floats, R2: Floats
-) -> Moment:
-    """Return both bodies, primary first, from relative variables, by (34)-(37)."""
-    return Moment(
-        v=np.array([v2, v2 + R2 @ V]),
-        Omega=np.array([Omega2, R.T @ Omega]),
-        x=np.array([x2, x2 + R2 @ X]),
-        R=np.array([R2, R2 @ R]),
-    )
-
-
-def angular_velocity(J: Floats, Pi: Floats) -> Floats:
-    """Return Omega of J Omega = Pi; a point, which has no inertia, does not turn."""
-    return np.linalg.solve(J, Pi) if np.any(J) else np.zeros(3)
-
-
-def _arguments(system: System, m: Floats, J: Floats) -> tuple[Any, ...]:
-    """Return what the inertial kernels need: potentials, parameters, pairs, masses, inertia."""
-    from binaryast.kernels.pointers import table_of
-
-    ends = np.cumsum([len(pair.parameters) for pair in system.pairs])
-    pairs = [
-        (pair.primary, pair.secondary, end - len(pair.parameters), end)
-        for pair, end in zip(system.pairs, ends, strict=True)
-    ]
-    return (
-        table_of([pair.gravity.potential for pair in system.pairs]),
-        np.concatenate([pair.parameters for pair in system.pairs]),
-        np.array(pairs, dtype=np.int64),
-        m,
-        J,
-    )
+    def _to_snapshot(self, **variables: Floats) -> Snapshot:
+        """Return the snapshot of variables: the inverse Legendre transform."""
