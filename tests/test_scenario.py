@@ -148,6 +148,19 @@ type = "PointMass"
 """
 
 
+def test_the_example_of_the_documentation_runs() -> None:
+    import textwrap
+
+    import binaryast.scenario
+
+    assert binaryast.scenario.__doc__
+    text = textwrap.dedent(binaryast.scenario.__doc__.partition("::\n")[2])
+    scenario = loads(text, name="example", where="example.toml")
+    assert [type(pair.gravity).__name__ for pair in scenario.system.pairs] == [*2 * ["SecondDegree"], "PointMass"]
+    run = ba.propagate(scenario.system, scenario.state, duration=1 * u.h, integrator=scenario.integrator)
+    assert run.status == "completed"
+
+
 def test_gravity_by_pairs() -> None:
     text = SN263.replace('type = "SecondDegree"\n', 'type = "SecondDegree"\n' + PAIRS)
     system = loads(text, name="mine", where="mine.toml").system

@@ -139,10 +139,10 @@ def main() -> None:
     """Print every edge of every case."""
     for name in CASES:
         print(f"{name}: {STEPS} steps of {case(name).step:g} s; continuous to {case(name).end:g} s at {TOLERANCE:g}")
-        print(f"  {'':62} {'position':>9} {'velocity':>9} {'attitude':>9} {'spin':>9}")
+        print(f"  {'':62} {'position':>9} {'velocity':>9} {'attitude':>9} {'spin':>9} {'largest':>9}")
         for edge, values in edges(name).items():
             form = "{:9.4f}" if edge.startswith("order") else "{:9.1e}"
-            print(f"  {edge:62} {' '.join(form.format(value) for value in values)}")
+            print(f"  {edge:62} {' '.join(form.format(value) for value in (*values, max(values)))}")
 
 
 if __name__ == "__main__":

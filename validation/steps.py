@@ -15,7 +15,7 @@ def take_steps(w: Working, h: float, count: int, *, save: int = 0, touching: boo
     """
     watch = Watch()
     watch.begin(w.measure(w.state, w.constants), 0.0)
-    kernel = ba.LGVI(1 * u.s).kernel(inertial=len(w.before) > 3)
+    kernel = ba.LGVI(1 * u.s).kernel(inertial=w.inertial)
     stride = save or count
     rows = np.empty((count // stride, w.row_size))
     surfaces = w.surfaces if touching else np.zeros_like(w.surfaces)

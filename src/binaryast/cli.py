@@ -112,10 +112,14 @@ def parser() -> argparse.ArgumentParser:
     running.add_argument("--duration", metavar="TIME", help="how long, such as 60d")
     running.add_argument("--step", metavar="TIME", help="largest step, such as 40s")
     running.add_argument("--save-every", metavar="TIME", help="time between saved rows, such as 10min")
-    running.add_argument("--degree", type=int, choices=(0, 2), help="degree of the mutual gravity: 0 point masses, 2")
-    running.add_argument("--integrator", choices=("LGVI", "RungeKutta"), default="LGVI", help="method (default: LGVI)")
+    running.add_argument("--degree", type=int, choices=(0, 2), help="degree of gravity: 0 (point masses) or 2")
+    running.add_argument("--integrator", choices=("LGVI", "RungeKutta"), help="method (default: LGVI)")
     running.add_argument("--order", type=int, choices=(2,), default=2, help="order of the method (default: 2)")
-    running.add_argument("--frame", choices=("relative", "inertial"), help="of the variables")
+    running.add_argument(
+        "--frame",
+        choices=("relative", "inertial"),
+        help="whose variables are stepped",
+    )
     _file(running.add_argument("-o", "--output", metavar="FILE.h5", help="where to write (default: NAME.h5 here)"))
     running.add_argument("--no-picture", action="store_true", help="write no picture beside the file")
     running.add_argument("--force", action="store_true", help="replace files that exist")
@@ -191,7 +195,8 @@ def _show(options: argparse.Namespace) -> int:
         density = "" if body.density is None else f", {body.density.value:.5g} kg/m3"
         print(f"  {body.name} ({role}): {body.shape!r}".replace("<Quantity ", "").replace(">", ""))
         print(f"    {body.si.mass:.6g} kg, GM {body.si.gm:.8g} m3/s2{density}; moments {moments} kg m2")
-    print(f"  gravity: {entry.system.gravity!r}")
+    for line in _gravity(entry.system):
+        print(f"  gravity{line}")
     distances = np.linalg.norm(entry.state.si.position[1:] - entry.state.si.position[0], axis=1)
     print(f"  start: separation {', '.join(f'{d:.8g}' for d in distances)} m, axes {entry.state.frame}")
     print(f"  by default: {span(entry.duration.value)} in steps of {entry.integrator.step.value:g} s")
@@ -199,6 +204,14 @@ def _show(options: argparse.Namespace) -> int:
         more = "".join(f"; {key}: {source[key]}" for key in ("uncertainty", "note") if key in source)
         print(f"  {source['what']}: {source['source']}{more}")
     return 0
+
+
+def _gravity(system: "System") -> list[str]:
+    """Return what is said of gravity: one model, or that of each pair."""
+    if not isinstance(system.gravity, tuple):
+        return [f": {system.gravity!r}"]
+    names = system.names
+    return [f" of {names[pair.primary]} and {names[pair.secondary]}: {pair.gravity!r}" for pair in system.pairs]
 
 
 def _run(options: argparse.Namespace) -> int:
@@ -261,7 +274,6 @@ def _time(text: str | None, option: str) -> Any:
 def _start(options: argparse.Namespace) -> tuple["System", "State", "Integrator", Any, Any]:
     """Return what to run: a scenario or the end of an earlier run, with the options in the place of its own values."""
     from binaryast import gravity
-    from binaryast.integrators import LGVI, RungeKutta, Stepping
 
     duration, step, save_every = (
         _time(getattr(options, name), f"--{name.replace('_', '-')}") for name in ("duration", "step", "save_every")
@@ -280,14 +292,25 @@ def _start(options: argparse.Namespace) -> tuple["System", "State", "Integrator"
         save_every = entry.save_every if save_every is None else save_every
     if options.degree is not None:
         pair = replace(pair, gravity=gravity.PointMass() if options.degree == 0 else gravity.SecondDegree())
-    if options.integrator == "RungeKutta":
-        integrator = RungeKutta(step=step, frame=options.frame)
-    elif step is not None or options.frame is not None:
-        before = integrator.step if isinstance(integrator, Stepping) else None
-        if step is None and before is None:
-            raise InputError("--step: say how large the steps of LGVI may be, such as 40s")
-        integrator = LGVI(before if step is None else step, order=options.order, frame=options.frame)
-    return pair, start, integrator, duration, save_every
+    if save_every is not None and options.save_every is None and save_every > duration:
+        save_every = None  # the scenario's, for its own longer duration
+    return pair, start, _integrator(integrator, step, options), duration, save_every
+
+
+def _integrator(before: "Integrator", step: Any, options: argparse.Namespace) -> "Integrator":
+    """Return the integrator that the options ask for, the scenario's or the earlier run's where they do not."""
+    from binaryast.integrators import LGVI, RungeKutta, Stepping
+
+    kind = options.integrator or ("LGVI" if step is not None else type(before).__name__)
+    frame = before.frame if options.frame is None else options.frame
+    if kind == "RungeKutta":
+        tight = before if isinstance(before, RungeKutta) else RungeKutta()
+        return RungeKutta(tight.rtol, tight.atol, step, tight.method, frame)
+    if step is None and isinstance(before, Stepping):
+        step = before.step
+    if step is None:
+        raise InputError("--step: say how large the steps of LGVI may be, such as 40s")
+    return LGVI(step, order=options.order, frame=frame)
 
 
 def _say_if_cold() -> None:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from binaryast.errors import ContactError
 from binaryast.kernels import loop
 from binaryast.system import System
 from binaryast.units import Floats
@@ -78,6 +79,16 @@ def contact_message(system: System, pair: int, after: float) -> str:
     """Return what is said of a contact."""
     primary, secondary = (system.names[i] for i in system.pairs[pair][:2])
     return f"{secondary} touched {primary} in the step that ends at {after:g} s"
+
+
+def overlap(system: System, pair: int, position: Floats) -> ContactError:
+    """Return the error of two bodies that touch at the start; positions (n, 3)."""
+    two, one = system.pairs[pair][:2]
+    distance = float(np.linalg.norm(position[one] - position[two]))
+    return ContactError(
+        f"state: {system.names[two]} and {system.names[one]} overlap at the start, {distance:g} m apart: "
+        "expected surfaces that do not touch; move them further apart"
+    )
 
 
 def interruption_message(after: float) -> str:

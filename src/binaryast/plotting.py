@@ -95,7 +95,7 @@ def orbit(run: Trajectory, ax: Axes | None = None, *, frame: str = "inertial") -
     if frame == "inertial":
         plane = _mean_plane(run)
         paths, attitudes = run.si.position, run.si.attitude[-1]
-        place, subject = "in the orbit plane, inertial", "Orbit"
+        place, subject = "in the mean orbit plane, inertial", "Orbit"
     elif frame == "primary":
         plane = np.eye(3)[:2]
         to_primary = np.swapaxes(run.si.attitude[:, 0], -1, -2)
@@ -229,8 +229,8 @@ def conserved(run: Trajectory, ax: Axes | None = None) -> Axes:
     energy, momentum = run.energy.value, run.angular_momentum.value
     curves: tuple[tuple[Floats, str, str], ...] = (
         (_relative_error(energy[:, None]), "energy", PRIMARY),
-        (_relative_error(momentum), "angular momentum", SECONDARY),
         (run.rotation_error, r"rotation, $\|I - R^T R\|$", "#6a994e"),
+        (_relative_error(momentum), "angular momentum", SECONDARY),
     )
     floor = np.finfo(float).eps / 4  # an error of zero has no logarithm
     for values, label, colour in curves:

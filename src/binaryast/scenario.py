@@ -1,7 +1,49 @@
 """Scenario files: a system, its start and how to run it, as TOML with units in texts.
 
 The words are those of the Python interface: ``type`` names a class or a way to make a state, the other keys are its
-arguments.
+arguments. Only gravity by pairs and the orbits of several bodies have tables of their own::
+
+    [[bodies]]                                    # as many as there are, the primary first
+    name = "A"
+    shape = { type = "Ellipsoid", a = "500 m", b = "450 m", c = "400 m" }
+    density = "2000 kg / m3"                      # or mass, or gm; inertia overrides the shape's
+
+    [[bodies]]
+    name = "B"
+    shape = { type = "Sphere", radius = "60 m" }
+    mass = "2e9 kg"
+
+    [[bodies]]
+    name = "craft"
+    shape = { type = "Point" }
+    mass = "12 kg"
+
+    [gravity]                                     # of all pairs that are not named below
+    type = "SecondDegree"
+
+    [[gravity.pairs]]
+    bodies = ["B", "craft"]
+    type = "PointMass"
+
+    [state]                                       # or circular_orbit, from_elements (two bodies), inertial, relative
+    type = "from_orbits"
+    spins = ["3 h", "synchronous", "none"]        # a point has none
+
+    [[state.orbits]]                              # one for each body but the primary
+    semi_major_axis = "2 km"
+
+    [[state.orbits]]
+    semi_major_axis = "8 km"
+    eccentricity = 0.1
+    about = "inner"
+
+    [state.poles]                                 # of bodies whose z axis is not their orbit's
+    A = [0, 0.1, 1]
+
+    [run]
+    duration = "5 d"
+    step = "20 s"
+    save_every = "10 min"                         # may be left out
 """
 
 import inspect
@@ -298,7 +340,8 @@ def _source(table: Any, where: str) -> dict[str, str]:
 def _choice(table: dict[str, Any], choices: Iterable[str], where: str) -> str:
     """Return the value of ``type``, which must be one of the choices."""
     if "type" not in table:
-        raise InputError(f"{where}.type is missing: expected one of {', '.join(choices)}")
+        more = "; for single pairs there is [[gravity.pairs]]" if where == "gravity" else ""
+        raise InputError(f"{where}.type is missing: expected one of {', '.join(choices)}{more}")
     kind = _text(table["type"], f"{where}.type")
     if kind not in choices:
         raise InputError(

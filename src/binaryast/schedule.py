@@ -3,10 +3,14 @@
 from math import ceil, floor
 from typing import NamedTuple
 
+import numpy as np
+
 from binaryast.errors import InputError, StepError
+from binaryast.units import Floats
 
 MOST_ROWS_BY_DEFAULT = 2000
 MOST_ROWS = 10_000_000
+ROWS_OF_UNEQUAL_STEPS = 1000  # by default
 MOST_STEPS = 10**15  # beyond it, times would lose digits
 SLACK = 1e-9  # relative: a duration of 8640.000000001 saving intervals has 8640 of them
 
@@ -33,14 +37,9 @@ def schedule(end: float, step: float, interval: float | None) -> list[Segment]:
         whole, rest = divmod(count, stride)
         segments = [Segment(end / count, whole * stride, stride), Segment(end / count, rest, max(rest, 1))]
     else:
-        if interval > end * (1 + SLACK):
-            raise StepError(f"save_every: {interval:g} s is longer than the run of {end:g} s")
+        _check_interval(end, interval)
         stride = ceil(interval / step * (1 - SLACK))
-        whole = floor(min(end / interval * (1 + SLACK), 2 * MOST_ROWS))
-        if whole > MOST_ROWS:
-            raise InputError(
-                f"save_every: {interval:g} s would keep {end / interval:.3g} rows, at most {MOST_ROWS} are possible"
-            )
+        whole = floor(end / interval * (1 + SLACK))
         remaining = end - whole * interval
         rest = ceil(remaining / (interval / stride) * (1 - SLACK)) if remaining > SLACK * interval else 0
         segments = [
@@ -48,6 +47,30 @@ def schedule(end: float, step: float, interval: float | None) -> list[Segment]:
             Segment(remaining / max(rest, 1), rest, max(rest, 1)),
         ]
     return [segment for segment in segments if segment.steps]
+
+
+def row_times(end: float, interval: float | None) -> Floats:
+    """Return when rows of a run are saved whose steps are not equal: every interval, and at the end."""
+    if interval is None:
+        return np.linspace(0.0, end, ROWS_OF_UNEQUAL_STEPS + 1)
+    _check_interval(end, interval)
+    times = np.arange(floor(end / interval * (1 + SLACK)) + 1) * interval
+    if end - times[-1] <= SLACK * interval:
+        times[-1] = end
+        return times
+    return np.append(times, end)
+
+
+def _check_interval(end: float, interval: float) -> None:
+    """Raise for an interval of saving that is longer than the run, or makes too many rows."""
+    if interval > end * (1 + SLACK):
+        raise StepError(
+            f"save_every: {interval:g} s is longer than the run of {end:g} s: save more often, or run longer"
+        )
+    if end / interval * (1 + SLACK) >= MOST_ROWS + 1:
+        raise InputError(
+            f"save_every: {interval:g} s would keep {end / interval:.3g} rows, at most {MOST_ROWS} are possible"
+        )
 
 
 def _stride(count: int) -> int:

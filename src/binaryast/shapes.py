@@ -129,7 +129,8 @@ class Point(Shape):
     """A mass without extent: a body of this shape has a place and a velocity, and no attitude.
 
     Its attitude in a `binaryast.State` stays as it is given, its spin must be zero. It attracts and is attracted, and
-    a run ends where it enters another body's surface.
+    a run ends where it enters another body's surface. The figures of a run are those of the whole system: the error of
+    a body as light as a spacecraft is not seen in them. Compare a run of half the step.
 
     Examples
     --------

@@ -6,21 +6,18 @@ from typing import Any
 
 import numpy as np
 from scipy import integrate
-from scipy.spatial.transform import Rotation
 
-from binaryast import equations, working
-from binaryast.errors import ContactError, InputError
+from binaryast import equations
 from binaryast.integrators import RungeKutta
-from binaryast.kernels.bodies import layout
-from binaryast.outcome import Outcome, Watch, contact_message, interruption_message
+from binaryast.outcome import Outcome, Watch, contact_message, interruption_message, overlap
 from binaryast.progress import keyboard
-from binaryast.schedule import MOST_ROWS, Segment, schedule
+from binaryast.schedule import Segment, row_times, schedule
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.units import Floats
 from binaryast.working import Motion
+from binaryast.working.bodies import WorkingBodies
 
-ROWS_BY_DEFAULT = 1000  # of a run whose steps are not equal
 NEVER_REJECT = 1e200  # a tolerance for fixed steps
 
 
@@ -33,26 +30,23 @@ class SolvedRun:
         self.system, self.integrator, self.end = system, integrator, end
         inertial = integrator.is_inertial(len(system.bodies))
         self.equations = equations.continuous(system, frame="inertial" if inertial else "relative")
-        self.working = working.of(system, state, inertial=True)
+        self.working = WorkingBodies(system, state)
         self.y = self.equations.from_state(state)
         self.segments: list[Segment] = []
         if integrator.step is not None:
             self.segments = schedule(end, integrator.step.value, interval)
             self.times = np.concatenate([[0.0], *self._times_of_rows()])
         else:
-            self.times = _times(end, interval)
+            self.times = row_times(end, interval)
         self.watch = Watch()
         self.rows = [self.y]
         self.ended, self.message = "completed", ""
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
+        self.equations.rhs(0.0, self.y)  # compiles, where it must, before any bar is shown
         start = self.equations.invariants(self.y)
         self.watch.begin(start.measures, start.potential_energy)
         if touching := self._touching(self.y, self.y):
-            pair = system.pairs[touching - 1]
-            raise ContactError(
-                f"state: {system.names[pair.primary]} and {system.names[pair.secondary]} overlap at the start: "
-                "expected surfaces that do not touch; move them further apart"
-            )
+            raise overlap(system, touching - 1, state.si.position)
 
     def _times_of_rows(self) -> Iterator[Floats]:
         """Yield when rows are saved, segment by segment of equal steps."""
@@ -120,15 +114,8 @@ class SolvedRun:
 
     def _touching(self, before: Floats, after: Floats) -> int:
         """Return which pair touches within a step, counted from 1, or 0."""
-        positions = self.equations.snapshot(before).x
-        _, _, x, R = self.equations.snapshot(after)
-        w = self.working
-        w.before[: positions.size] = positions.ravel()
-        w.state[: x.size] = x.ravel()
-        attitude = layout.attitude_of(len(x))
-        w.state[attitude : attitude + 4 * len(x)] = Rotation.from_matrix(R).as_quat().ravel()
-        touching: int = w.touching(w.state, w.surfaces, w.before)
-        return touching
+        now = self.equations.snapshot(after)
+        return self.working.pair_touching(self.equations.snapshot(before).x, now.x, now.R)
 
     def outcome(self) -> Outcome:
         """Return what has been computed."""
@@ -151,16 +138,3 @@ class SolvedRun:
             step=self.segments[0].step if self.segments else self.elapsed / max(self.steps, 1),
             wall_time=self.wall_time,
         )
-
-
-def _times(end: float, interval: float | None) -> Floats:
-    """Return when rows are saved: every interval, with the end."""
-    if interval is None:
-        return np.linspace(0.0, end, ROWS_BY_DEFAULT + 1)
-    if interval > end * (1 + 1e-9):
-        raise InputError(f"save_every: {interval:g} s is longer than the run of {end:g} s")
-    if end / interval > MOST_ROWS:
-        raise InputError(f"save_every: {interval:g} s would keep {end / interval:.3g} rows, at most {MOST_ROWS}")
-    whole = int(end / interval * (1 + 1e-9))
-    times = np.arange(whole + 1) * interval
-    return times if end - times[-1] <= 1e-9 * interval else np.append(times, end)

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from binaryast import working
-from binaryast.errors import ContactError, StepError
+from binaryast.errors import StepError
 from binaryast.integrators import Stepping
 from binaryast.kernels import loop, status
-from binaryast.outcome import Outcome, Watch, contact_message, interruption_message
+from binaryast.outcome import Outcome, Watch, contact_message, interruption_message, overlap
 from binaryast.progress import keyboard
 from binaryast.schedule import SLACK, Segment
 from binaryast.state import State
@@ -58,18 +58,8 @@ class SteppedRun:
         separation = measures[-1]
         touching = 1 if separation == 0 else w.touching(w.state, w.surfaces, w.state)
         if touching:
-            pair = self.system.pairs[touching - 1]
-            names = f"{self.system.names[pair.primary]} and {self.system.names[pair.secondary]}"
-            raise ContactError(
-                f"state: {names} overlap at the start, {self._distance(touching - 1):g} m apart: "
-                "expected surfaces that do not touch; move them further apart"
-            )
+            raise overlap(self.system, touching - 1, w.from_rows(self.rows[0], self.times[0]).position[0])
         self.watch.begin(measures, float(w.state[w.potential_at]))
-
-    def _distance(self, pair: int) -> float:
-        position = self.working.from_rows(self.rows[0], self.times[0]).position[0]
-        two, one = self.system.pairs[pair][:2]
-        return float(np.linalg.norm(position[one] - position[two]))
 
     def go(self, show: Any) -> None:
         """Take all segments, as far as it goes.

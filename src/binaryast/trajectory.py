@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex, overload
 
 import numpy as np
 from astropy.time import Time, TimeDelta
@@ -16,7 +16,7 @@ from binaryast import storage
 from binaryast.errors import CheckError, InputError
 from binaryast.integrators import Integrator
 from binaryast.state import RelativeState, State
-from binaryast.system import System
+from binaryast.system import ROTATION_TOLERANCE, System
 from binaryast.units import Floats, brief, checked, numbers, quantity, span
 from binaryast.values import Value
 
@@ -78,7 +78,8 @@ class Trajectory(Value):
         none is given (a last stretch that ``save_every`` leaves has its own, smaller one; of an adaptive integrator,
         their mean); and the time it took.
     max_relative_energy_error, max_energy_error, max_energy_error_over_potential : float, Quantity, float
-        Largest |E - E0| over every step: over |E0|, itself, and over |U0|. Spin energy hides the orbit in the first.
+        Largest |E - E0| over every step: over |E0|, itself, and over |U0|. Spin energy hides the orbit in the first,
+        and heavy bodies hide light ones in all of them.
     max_relative_angular_momentum_error, max_relative_linear_momentum_error, max_rotation_error : float
         Over every step. Linear momentum is relative to sum m |v|; in the relative frame it is kept by construction,
         and its figure is the round-off of the saved rows.
@@ -117,7 +118,13 @@ class Trajectory(Value):
     def __len__(self) -> int:
         return len(self.si.time)
 
-    def __getitem__(self, index: Any) -> Any:
+    @overload
+    def __getitem__(self, index: SupportsIndex) -> State: ...
+
+    @overload
+    def __getitem__(self, index: slice) -> "Trajectory": ...
+
+    def __getitem__(self, index: Any) -> "State | Trajectory":
         try:
             if isinstance(index, slice):
                 return self._rows(index)
@@ -127,6 +134,11 @@ class Trajectory(Value):
         if not -len(self) <= index < len(self):
             raise IndexError(f"run[{index}]: there are {len(self)} rows")
         epoch = None if self.epoch is None else self.epoch + TimeDelta(self.time[index])
+        if (error := float(_rotation_errors(self.si.attitude[index]).max())) > ROTATION_TOLERANCE:
+            raise InputError(
+                f"run[{index}]: its attitudes are no rotations, ||I - R^T R|| is {error:.3g}: this run left SO(3); "
+                f"give {type(self.integrator).__name__} tighter tolerances, or use ba.LGVI"
+            )
         return State(
             self.position[index], self.velocity[index], self.attitude[index], self.spin[index], epoch, self.frame
         )
@@ -248,9 +260,7 @@ class Trajectory(Value):
     @property
     def rotation_error(self) -> Floats:
         """||I - R^T R||, the largest of all attitudes (N,)."""
-        r = self.si.attitude
-        errors = np.linalg.norm(np.eye(3) - np.swapaxes(r, -1, -2) @ r, axis=(-2, -1))
-        return np.asarray(errors.max(axis=1))
+        return np.asarray(_rotation_errors(self.si.attitude).max(axis=1))
 
     def check(
         self, *, energy: float | None = None, momentum: float | None = None, rotation: float | None = None
@@ -443,6 +453,11 @@ class Trajectory(Value):
             raise storage.broken(path, f"{error.args[0]} is missing") from None
         except Exception as error:  # a file that was changed can hold anything
             raise storage.broken(path, brief(error)) from None
+
+
+def _rotation_errors(r: Floats) -> Floats:
+    """Return ||I - R^T R|| of matrices (..., 3, 3)."""
+    return np.asarray(np.linalg.norm(np.eye(3) - np.swapaxes(r, -1, -2) @ r, axis=(-2, -1)))
 
 
 def joined(names: Sequence[str]) -> str:

@@ -58,8 +58,8 @@ class Equations(ABC):
     numbers : str
         Those of the equations in the paper.
     variables : dict of str to tuple of int
-        The variables in their order in ``y``, named as in the paper, each with its shape. Inertial ones have a row for
-        each body; relative ones are in the primary's frame, but for those that end in 2 in lower case, and R2.
+        The variables in their order in ``y``, named as in the paper, each with its shape; what they are, in which
+        units and frames, stands in `binaryast.equations`.
     size : int
         The length of ``y``.
     """

@@ -4,8 +4,8 @@ These are the reference that the production steps are held to: matrices and vect
 function takes ``steps`` steps, changes its variables in place and returns a status. The Lagrangian forms step two
 configurations, k and k+1. There F is a product of two attitudes, which round-off takes off SO(3); second differences
 would add that up with the square of the number of steps, so F is taken as the nearest rotation. They still lose digits
-as the step shrinks. The summed forms carry the differences themselves, as one would sum (78) and (79): the increment D
-of the position from k to k+1, and g of (128), S(g) = F J_d - J_d F^T.
+as the step shrinks. The summed forms carry the differences themselves, as one would sum (78) and (79): D, which is
+x_{k+1} - x_k or F2_k X_{k+1} - X_k, and g of (128), S(g) = F J_d - J_d F^T.
 
 A body whose inertia is zero is a point, which does not turn.
 """

@@ -28,6 +28,8 @@ class Working(ABC):
 
     Attributes
     ----------
+    inertial : bool
+        Whether it is that of several bodies.
     state : ndarray
         The working state: what a step changes, and a checkpoint.
     before : ndarray
@@ -42,6 +44,7 @@ class Working(ABC):
         What is watched at a step, what touches in it, and the loop of steps.
     """
 
+    inertial: bool
     state: Floats
     before: Floats
     constants: Floats

@@ -18,6 +18,7 @@ from binaryast.working.base import Motion, Working, check_gravity, matrices, rat
 class WorkingBodies(Working):
     """Any number of bodies: position, velocity, attitude and angular momentum of each about the barycentre."""
 
+    inertial = True
     measure, touching, advance = staticmethod(measure), staticmethod(touching), staticmethod(advance)
 
     def __init__(self, system: System, state: State) -> None:
@@ -54,6 +55,15 @@ class WorkingBodies(Working):
             spin=spins(self.system, momentum.reshape(-1, n, 3)),
             potential_energy=potential[:, 0].copy(),
         )
+
+    def pair_touching(self, before: Floats, position: Floats, attitude: Floats) -> int:
+        """Return which pair touches on the way between positions (n, 3), counted from 1, or 0; attitudes (n, 3, 3)."""
+        at = layout.attitude_of(self.count)
+        self.before[: before.size] = before.ravel()
+        self.state[: position.size] = position.ravel()
+        self.state[at : at + 4 * self.count] = Rotation.from_matrix(attitude).as_quat().ravel()
+        touching: int = self.touching(self.state, self.surfaces, self.before)
+        return touching
 
     def momentum_and_torque(self, body: int) -> tuple[Floats, Floats]:
         """Return a body's angular momentum and the torque on it, both in its own frame."""

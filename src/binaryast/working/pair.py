@@ -23,6 +23,7 @@ RATIOS = (layout.RATIOS_2, layout.RATIOS_1)
 class WorkingPair(Working):
     """A pair: the relative position, and attitude and angular momentum of both bodies."""
 
+    inertial = False
     row_size = layout.ROW_SIZE
     potential_at = layout.POTENTIAL
     measure, touching, advance = staticmethod(measure), staticmethod(touching), staticmethod(advance)
