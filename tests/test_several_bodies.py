@@ -276,3 +276,52 @@ def test_wrong_orbits(changes: dict, says: str) -> None:
 def test_wrong_elements(arguments: dict, says: str) -> None:
     with pytest.raises(InputError, match=says):
         ba.Orbit(1 * u.km, **arguments)
+
+
+def test_a_step_too_long_for_a_light_body_is_said() -> None:
+    """Its error is not seen in the energy of all."""
+    bodies = [ba.RigidBody("A", ba.Sphere(200 * u.m), mass=5e11 * u.kg), *spheres(1)]
+    bodies[1] = ba.RigidBody("B", ba.Sphere(50 * u.m), mass=4e9 * u.kg)
+    bodies.append(ba.RigidBody("craft", ba.Point(), mass=12 * u.kg))
+    system = ba.System(bodies)
+    state = ba.State.from_orbits(
+        system, [ba.Orbit(20 * u.km), ba.Orbit(600 * u.m, 0.5)], spins=[1000 * u.h, 1000 * u.h, None]
+    )
+    with pytest.warns(ba.errors.StepWarning, match="craft would go once round A"):
+        ba.propagate(system, state, duration=1 * u.h, integrator=ba.LGVI(1000 * u.s))
+    ba.propagate(system, state, duration=1 * u.h, integrator=ba.LGVI(10 * u.s))
+
+
+def test_mass_centres_in_one_place_are_named() -> None:
+    for integrator in (ba.LGVI(1 * u.s), ba.RungeKutta()):
+        with pytest.raises(ContactError, match="B and C overlap"):
+            ba.propagate(
+                ba.System(spheres(3)),
+                at((0, 0, 0), (1000, 0, 0), (1000, 0, 0)),
+                duration=1 * u.h,
+                integrator=integrator,
+            )
+
+
+def test_what_was_given_cannot_be_changed_afterwards() -> None:
+    length = 5 * u.km
+    orbit = ba.Orbit(length)
+    length *= -1
+    assert orbit.semi_major_axis == 5 * u.km
+    for array in (orbit.semi_major_axis, orbit.inclination, ba.Orbit(1 * u.km).inclination):
+        with pytest.raises(ValueError, match="read-only"):
+            array[...] = 1 * array.unit
+    system = ba.System(spheres(2))
+    with pytest.raises(ValueError, match="read-only"):
+        system.pairs[0].parameters[0] = 1
+
+
+def test_the_picture_does_not_depend_on_where_the_origin_is() -> None:
+    from binaryast.plotting import _mean_plane
+
+    system, state = ba.catalogue.load("sn263")
+    moved = ba.State(state.position + 1e5 * u.m, state.velocity + [0, 0, 5] * u.m / u.s, state.attitude, state.spin)
+    one, two = (
+        _mean_plane(ba.propagate(system, s, duration=2 * u.day, integrator=ba.LGVI(60 * u.s))) for s in (state, moved)
+    )
+    np.testing.assert_allclose(one, two, atol=1e-9)

@@ -8,7 +8,7 @@ from validation.structure import MAPS, OF_BODIES, UNIT_OF_ENERGY
 
 import binaryast as ba
 
-# Round-off of the differences is 5e-13 for equal masses; in the units of the lighter body it is as much more as the
+# Round-off of the differences is 1e-12 for equal masses; in the units of the lighter body it is as much more as the
 # root of the masses' ratio: the largest seen is 1.3e-11.
 NOISE = 3e-11
 WHERE = [(where, name) for where in ("dumbbells", "a tumbling pair") for name in MAPS]
@@ -20,8 +20,11 @@ def test_symplectic(where: str, name: str) -> None:
     assert structure.symplectic_defect(MAPS[name], structure.settings()[where]) < NOISE
 
 
-def test_a_method_that_is_not_symplectic_is_seen() -> None:
-    assert structure.symplectic_defect(structure.euler, structure.settings()["dumbbells"]) > 1e-3
+@pytest.mark.parametrize("where", ["dumbbells", "a tumbling pair", "four bodies"])
+@pytest.mark.parametrize("name", structure.OTHERS)
+def test_a_method_that_is_not_symplectic_is_seen(where: str, name: str) -> None:
+    """Even one of order 8, at the same step."""
+    assert structure.symplectic_defect(structure.OTHERS[name], structure.settings()[where]) > 50 * NOISE
 
 
 @pytest.mark.parametrize(("count", "bound"), [(1, 1e-13), (2000, 1e-11)])
@@ -56,7 +59,7 @@ def test_better_than_figure_5(name: str, step: float, frame: str | None) -> None
         assert run.rotation_of_rows < 6e-16
         assert run.angular < 5e-15
         assert run.linear < 5e-15
-    assert long.rotation_of_rows < 1.2 * short.rotation_of_rows
+    assert long.rotation_of_rows < 1.5 * short.rotation_of_rows
     assert long.rotation < 1.3 * short.rotation
     assert long.energy < 1.1 * short.energy
 

@@ -168,9 +168,12 @@ def _pair(run: Trajectory, bodies: Bodies) -> tuple[int, int]:
     names = run.system.names
     if bodies is None and len(names) == 2:
         return 0, 1
-    if not isinstance(bodies, (tuple, list)) or len(bodies) != 2 or bodies[0] == bodies[1]:
+    if not isinstance(bodies, (tuple, list)) or len(bodies) != 2:
         raise InputError(f"bodies: expected primary and secondary, such as {names[:2]!r}, got {brief(bodies)}")
-    return run.system.index(bodies[0]), run.system.index(bodies[1])
+    primary, secondary = run.system.index(bodies[0]), run.system.index(bodies[1])
+    if primary == secondary:
+        raise InputError(f"bodies: {names[primary]} twice: expected two bodies, such as {names[:2]!r}")
+    return primary, secondary
 
 
 def _relative(run: Trajectory, bodies: Bodies) -> tuple[Floats, Floats]:

@@ -1,5 +1,6 @@
 """Rigid bodies: a shape with mass, brought to its mass centre and principal axes."""
 
+from copy import deepcopy
 from dataclasses import dataclass, field
 from itertools import permutations, product
 from types import MappingProxyType
@@ -98,13 +99,12 @@ class RigidBody(Value):
         if not isinstance(shape, Shape):
             raise InputError(f"RigidBody {name}: shape: expected a shape such as ba.Ellipsoid(...), got {brief(shape)}")
         given = {"mass": mass, "density": density, "gm": gm}
-        given = {key: value for key, value in given.items() if value is not None}
+        given = {key: deepcopy(value) for key, value in given.items() if value is not None}
         if len(given) != 1:
             found = " and ".join(given) or "none"
             raise InputError(f"RigidBody {name}: give exactly one of mass=, density= and gm=, got {found}")
-        self._set(
-            name=name, shape=shape, given=MappingProxyType(given | ({} if inertia is None else {"inertia": inertia}))
-        )
+        also = {} if inertia is None else {"inertia": deepcopy(inertia)}
+        self._set(name=name, shape=shape, given=MappingProxyType(given | also))
         mass_si, gm_si = self._masses(**given)
         if not 1 / LARGEST < mass_si < LARGEST:
             raise InputError(f"RigidBody {name}: a mass of {mass_si:g} kg is beyond what can be computed with")

@@ -150,8 +150,8 @@ class RungeKutta(Integrator):
 
     It is a reference, not a recommendation. It adds to the elements of a rotation matrix as to any numbers, so its
     attitudes leave SO(3), and ||I - R^T R|| grows; energy and momenta drift; it is neither symplectic nor reversible.
-    Over short arcs at a tight tolerance it is accurate, which is what it is good for. SciPy's loop is Python: a step
-    takes about a millisecond.
+    Over short arcs at a tight tolerance it is accurate, which is what it is good for. Rows between adaptive steps are
+    SciPy's interpolation, a little less accurate than the steps. Its loop is Python: a step takes about a millisecond.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ class RungeKutta(Integrator):
             if not LEAST_TOLERANCE <= value < 1:
                 raise InputError(f"RungeKutta: {name}={value:g}: expected {LEAST_TOLERANCE:g} <= {name} < 1")
             self._set(**{name: value})
-        if self.method not in self.orders:
+        if not isinstance(self.method, str) or self.method not in self.orders:
             near = did_you_mean(str(self.method), self.orders)
             raise InputError(
                 f"RungeKutta: method={brief(repr(self.method))} is not known{near}; there are {', '.join(self.orders)}"
@@ -219,5 +219,5 @@ class RungeKutta(Integrator):
 
 def check_frame(frame: Any, name: str) -> None:
     """Raise for a frame that there is not."""
-    if frame is not None and frame not in FRAMES:
+    if frame is not None and (not isinstance(frame, str) or frame not in FRAMES):
         raise InputError(f"{name}: frame={brief(repr(frame))}: expected one of {', '.join(FRAMES)}")

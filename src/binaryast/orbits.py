@@ -13,12 +13,13 @@ from scipy.spatial.transform import Rotation
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError, UnitError
 from binaryast.system import System
-from binaryast.units import Floats, brief, numbers, to_si
+from binaryast.units import Floats, brief, numbers, quantity, to_si
 from binaryast.values import Value
 
 PHASES = 24  # of a body that turns freely, in the mean over its turn: exact below that degree
 CENTRES = ("primary", "inner")
 ZERO = Quantity(0.0, u.deg)
+ZERO.flags.writeable = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,21 +62,22 @@ class Orbit(Value):
     about: str = "primary"
 
     def __post_init__(self) -> None:
-        to_si(self.semi_major_axis, "m", "semi_major_axis", sign="positive")
+        a = to_si(self.semi_major_axis, "m", "semi_major_axis", sign="positive")
         e = float(numbers(self.eccentricity, "eccentricity", ()))
         if not 0 <= e < 1:
             raise InputError(
                 f"eccentricity: expected 0 <= e < 1, got {e:g}; give an unbound orbit by its vectors to ba.State"
             )
+        self._set(semi_major_axis=quantity(a, "m"), eccentricity=e)
         for name in ("inclination", "longitude_of_ascending_node", "argument_of_periapsis"):
-            to_si(getattr(self, name), "rad", name)
+            self._set(**{name: quantity(to_si(getattr(self, name), "rad", name), "rad")})
         if self.true_anomaly is not None and self.mean_anomaly is not None:
             raise InputError("give at most one of true_anomaly= and mean_anomaly=")
         for name in ("true_anomaly", "mean_anomaly"):
             if getattr(self, name) is not None:
-                to_si(getattr(self, name), "rad", name)
-        if self.about not in CENTRES:
-            raise InputError(f"about={self.about!r}: expected one of {', '.join(CENTRES)}")
+                self._set(**{name: quantity(to_si(getattr(self, name), "rad", name), "rad")})
+        if not isinstance(self.about, str) or self.about not in CENTRES:
+            raise InputError(f"about={brief(repr(self.about))}: expected one of {', '.join(CENTRES)}")
 
     def rate(self, gm: float) -> float:
         """Return the mean motion [rad/s] about a centre, ``gm`` being G times both masses."""

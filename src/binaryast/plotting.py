@@ -129,11 +129,17 @@ def _mean_plane(run: Trajectory) -> Floats:
     if len(run.system.bodies) == 2:
         return mean_orbit_axes(run)[:2]
     masses = np.array([body.si.mass for body in run.system.bodies])
-    pole = np.einsum("i,nij->j", masses, np.cross(run.si.position, run.si.velocity))
-    if not np.any(pole):
-        raise InputError("the bodies move on lines: there is no orbit plane")
+    shares = masses / masses.sum()
+    x, v = (array - np.einsum("i,nij->nj", shares, array)[:, None] for array in (run.si.position, run.si.velocity))
+    pole = np.einsum("i,nij->j", masses, np.cross(x, v))
+    size = np.einsum("i,ni->", masses, np.linalg.norm(x, axis=-1) * np.linalg.norm(v, axis=-1))
+    if not np.linalg.norm(pole) > 1e-9 * size:
+        raise InputError("the bodies do not go round each other: there is no orbit plane")
     pole = pole / np.linalg.norm(pole)
-    first = run.si.position[0, 1] - run.si.position[0, 0]
+    first = np.eye(3)[np.argmin(np.abs(pole))]  # an axis that is not along the pole
+    start = x[0, 1] - x[0, 0]
+    if np.linalg.norm(np.cross(pole, start)) > 1e-6 * np.linalg.norm(start):
+        first = start
     first = first - (first @ pole) * pole
     first = first / np.linalg.norm(first)
     return np.array([first, np.cross(pole, first)])
@@ -178,6 +184,8 @@ def spins(run: Trajectory, ax: Axes | None = None) -> Axes:
     ax = _axes(run, ax)
     rates = np.linalg.norm(run.si.spin, axis=-1)
     turning = [i for i, body in enumerate(run.system.bodies) if not body.is_point]
+    if not turning:
+        raise InputError("points do not turn: there are no spins to draw")
     relative = bool(np.all(rates[0, turning] > 0))
     for i in turning:
         values = rates[:, i] / rates[0, i] - 1 if relative else rates[:, i]
@@ -198,7 +206,10 @@ def libration(run: Trajectory, ax: Axes | None = None) -> Axes:
     for i in range(1, len(names)):
         if run.system.bodies[i].is_point:
             continue
-        angle = np.degrees(libration_angle(run, (0, i)).value)
+        try:
+            angle = np.degrees(libration_angle(run, (0, i)).value)
+        except InputError:  # its rows are too far apart, or it moves on a line: others may not be
+            continue
         if np.abs(angle).max() < 90:
             ax.plot(_time(run)[0], angle, color=_colour(i), lw=0.8, label=_plain(names[i]))
     if not ax.lines:

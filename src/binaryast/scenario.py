@@ -204,10 +204,10 @@ def _body(table: dict[str, Any], where: str) -> RigidBody:
 
 def _gravity(table: dict[str, Any]) -> Any:
     """Return the model, second degree where the file says nothing; or models by pairs, the first one for the others."""
-    pairs = table.get("pairs", [])
+    pairs = table.get("pairs")
     others = {key: value for key, value in table.items() if key != "pairs"} or {"type": "SecondDegree"}
     model = _typed(others, GRAVITIES, "gravity")
-    if not pairs:
+    if pairs is None:
         return model
     if not isinstance(pairs, list) or not all(isinstance(pair, dict) for pair in pairs):
         raise InputError(f"gravity.pairs: expected tables [[gravity.pairs]], got {brief(pairs)}")
@@ -218,6 +218,8 @@ def _gravity(table: dict[str, Any]) -> Any:
         names = pair["bodies"]
         if not isinstance(names, list) or len(names) != 2 or not all(isinstance(name, str) for name in names):
             raise InputError(f"{where}.bodies: expected the names of two bodies, got {brief(names)}")
+        if tuple(names) in models:
+            raise InputError(f"{where}.bodies: the pair of {names[0]} and {names[1]} is given twice")
         models[tuple(names)] = _typed({k: v for k, v in pair.items() if k != "bodies"}, GRAVITIES, where)
     return models
 

@@ -1,24 +1,27 @@
-"""A run by SciPy's solvers on the continuous equations, watched at every step they take."""
+"""A run by SciPy's solvers on the continuous equations, watched at every step they take and at every row."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
 from scipy import integrate
 
 from binaryast import equations
+from binaryast.errors import InputError
 from binaryast.integrators import RungeKutta
 from binaryast.outcome import Outcome, Watch, contact_message, interruption_message, overlap
 from binaryast.progress import keyboard
 from binaryast.schedule import Segment, row_times, schedule
 from binaryast.state import State
 from binaryast.system import System
-from binaryast.units import Floats
+from binaryast.units import Floats, quantity
 from binaryast.working import Motion
+from binaryast.working.base import coinciding
 from binaryast.working.bodies import WorkingBodies
 
 NEVER_REJECT = 1e200  # a tolerance for fixed steps
+PIECES = 32  # of a step whose chord touches: its arc may not
 
 
 class SolvedRun:
@@ -31,40 +34,42 @@ class SolvedRun:
         inertial = integrator.is_inertial(len(system.bodies))
         self.equations = equations.continuous(system, frame="inertial" if inertial else "relative")
         self.working = WorkingBodies(system, state)
-        self.y = self.equations.from_state(state)
         self.segments: list[Segment] = []
         if integrator.step is not None:
             self.segments = schedule(end, integrator.step.value, interval)
-            self.times = np.concatenate([[0.0], *self._times_of_rows()])
+            self.times = np.array([0.0, *self._times_of_rows()])
         else:
             self.times = row_times(end, interval)
-        self.watch = Watch()
+        self.y = self.equations.from_state(_about(self.working.origin, state))
         self.rows = [self.y]
+        self.watch = Watch()
         self.ended, self.message = "completed", ""
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
-        self.equations.rhs(0.0, self.y)  # compiles, where it must, before any bar is shown
-        start = self.equations.invariants(self.y)
-        self.watch.begin(start.measures, start.potential_energy)
-        if touching := self._touching(self.y, self.y):
+        if touching := coinciding(system, state.si.position) or self._touching(self.y, self.y):
             raise overlap(system, touching - 1, state.si.position)
+        start = self.equations.invariants(self.y)
+        self.equations.rhs(0.0, self.y)  # compiles, where it must, before any bar is shown
+        self.watch.begin(start.measures, start.potential_energy)
 
-    def _times_of_rows(self) -> Iterator[Floats]:
-        """Yield when rows are saved, segment by segment of equal steps."""
-        begin = 0.0
+    def _times_of_rows(self) -> Iterator[float]:
+        """Yield when rows are saved, segment by segment of equal steps, the last at the very end."""
+        begin, left = 0.0, sum(segment.steps // segment.stride for segment in self.segments)
         for segment in self.segments:
-            yield begin + np.arange(1, segment.steps // segment.stride + 1) * (segment.stride * segment.step)
+            for k in range(1, segment.steps // segment.stride + 1):
+                left -= 1
+                yield begin + k * segment.stride * segment.step if left else self.end
             begin += segment.steps * segment.step
 
-    def go(self, show: Any) -> None:
+    def go(self, show: Callable[[float], None]) -> None:
         """Follow the motion as far as it goes."""
-        with keyboard() as pressed:
+        with keyboard() as pressed, np.errstate(all="ignore"):  # SciPy's own arithmetic, on its way to give up
             for solver in self._solvers():
                 while solver.status == "running" and self.ended == "completed":
                     began = time.perf_counter()
                     self._step(solver)
                     self.wall_time += time.perf_counter() - began
                     show(self.elapsed)
-                    if pressed and self.elapsed < self.end:
+                    if pressed and self.ended == "completed" and self.elapsed < self.end:
                         self.ended, self.message = "interrupted", interruption_message(self.elapsed)
                 if self.ended != "completed":
                     break
@@ -73,62 +78,88 @@ class SolvedRun:
             self.rows.append(self.y)
 
     def _solvers(self) -> Iterator[Any]:
-        """Yield SciPy's solver, one for each segment of fixed steps."""
+        """Yield SciPy's solver; of fixed steps one from each row to the next, to land on them exactly."""
         kind = getattr(integrate, self.integrator.method)
         rhs, scales = self.equations.rhs, self.equations.scales(self.y)
         if not self.segments:
             yield kind(rhs, 0.0, self.y, self.end, rtol=self.integrator.rtol, atol=self.integrator.atol * scales)
-        begin = 0.0
+        row = 0
         for segment in self.segments:
-            for _ in range(segment.steps // segment.stride):  # to land on the rows exactly
-                end = begin + segment.stride * segment.step
-                steps = {"first_step": min(segment.step, end - begin), "max_step": segment.step * (1 + 1e-9)}
-                yield kind(rhs, begin, self.y, end, rtol=NEVER_REJECT, atol=NEVER_REJECT, **steps)
-                begin = end
+            for _ in range(segment.steps // segment.stride):
+                begin, end = self.times[row : row + 2]
+                step = (end - begin) / segment.stride
+                fixed = {"first_step": step, "max_step": step * (1 + 1e-9)}
+                yield kind(rhs, begin, self.y, end, rtol=NEVER_REJECT, atol=NEVER_REJECT, **fixed)
+                row += 1
 
     def _step(self, solver: Any) -> None:
-        """Take one step of the solver, look at it, and save the rows that it passes."""
-        message = solver.step()
-        if solver.status == "failed" or not np.all(np.isfinite(solver.y)):
-            self.ended, self.message = "failed", f"SciPy's solver gave up after {self.elapsed:g} s: {message}"
+        """Take one step of the solver, look at what lies in it, and save the rows that it passes."""
+        try:
+            message = solver.step()
+            if solver.status == "failed":
+                raise InputError(f"SciPy's solver gave up: {message}")
+            between = solver.dense_output()
+            end, y, touched = self._way(solver, between)
+            while len(self.rows) < len(self.times) and self.times[len(self.rows)] < end:
+                due = self.times[len(self.rows)]
+                row = between(due)
+                self._look(due, row)
+                self.rows.append(row)
+            self._look(end, y)
+        except Exception as error:  # of SciPy, or what a user's potential raises
+            self.elapsed, self.y = float(self.times[len(self.rows) - 1]), self.rows[-1]
+            self.ended, self.message = "failed", f"{error}; the last good row is at {self.elapsed:g} s"
             return
-        if np.any(np.linalg.det(self.equations.snapshot(solver.y).R) <= 0):
-            self.ended, self.message = "failed", f"an attitude has left SO(3) altogether after {self.elapsed:g} s"
-            return
-        before, self.y, self.elapsed = self.y, solver.y.copy(), float(solver.t)
+        self.y, self.elapsed = y, end
         self.steps += 1
-        now = self.equations.invariants(self.y)
+        if len(self.rows) < len(self.times) and self.times[len(self.rows)] == end:
+            self.rows.append(y)
+        if touched:
+            self.ended, self.message = "contact", contact_message(self.system, touched - 1, end)
+
+    def _look(self, when: float, y: Floats) -> None:
+        """Take in what is measured; raise where it is not a number, or an attitude no rotation at all."""
+        now = self.equations.invariants(y)
+        if not np.all(np.isfinite([*now.measures, now.potential_energy])):
+            raise InputError("the energy or another figure is not a number any more")
+        if np.any(np.linalg.det(self.equations.snapshot(y).R) <= 0):
+            raise InputError("an attitude has left SO(3) altogether: tighten the tolerances")
         if self.watch.look(now.measures):
-            self.closest_time = self.elapsed
-        between: Any = None
-        while len(self.rows) < len(self.times) and self.times[len(self.rows)] <= self.elapsed * (1 + 1e-12):
-            due = self.times[len(self.rows)]
-            if abs(due - self.elapsed) <= 1e-12 * self.elapsed:
-                self.times[len(self.rows)] = self.elapsed
-                self.rows.append(self.y)
-            else:
-                between = solver.dense_output() if between is None else between
-                self.rows.append(between(due))
-        if touching := self._touching(before, self.y):
-            self.ended, self.message = "contact", contact_message(self.system, touching - 1, self.elapsed)
+            self.closest_time = when
+
+    def _way(self, solver: Any, between: Callable[[float], Floats]) -> tuple[float, Floats, int]:
+        """Return where a step ends: at its end, or where two bodies touch on the way, and which pair then does.
+
+        The chord of an arc passes nearer than the arc: only where the chord touches, the arc is followed in pieces.
+        """
+        before, after = self.y, solver.y.copy()
+        if not self._touching(before, after):
+            return float(solver.t), after, 0
+        for when in np.linspace(self.elapsed, solver.t, PIECES + 1)[1:]:
+            y = between(when) if when < solver.t else after
+            if touched := self._touching(before, y):
+                return float(when), y, touched
+            before = y
+        return float(solver.t), after, 0
 
     def _touching(self, before: Floats, after: Floats) -> int:
-        """Return which pair touches within a step, counted from 1, or 0."""
+        """Return which pair touches on the straight way, counted from 1, or 0."""
         now = self.equations.snapshot(after)
         return self.working.pair_touching(self.equations.snapshot(before).x, now.x, now.R)
 
     def outcome(self) -> Outcome:
         """Return what has been computed."""
-        moments = [self.equations.snapshot(row) for row in self.rows]
+        times = self.times[: len(self.rows)].copy()
+        found = [self.equations.snapshot(row) for row in self.rows]
         motion = Motion(
-            position=np.array([moment.x for moment in moments]),
-            velocity=np.array([moment.v for moment in moments]),
-            attitude=np.array([moment.R for moment in moments]),
-            spin=np.array([moment.Omega for moment in moments]),
+            position=self.working.moving_origin(times) + np.array([one.x for one in found]),
+            velocity=self.working.origin[1] + np.array([one.v for one in found]),
+            attitude=np.array([one.R for one in found]),
+            spin=np.array([one.Omega for one in found]),
             potential_energy=np.array([self.equations.invariants(row).potential_energy for row in self.rows]),
         )
         return Outcome(
-            time=self.times[: len(self.rows)].copy(),
+            time=times,
             motion=motion,
             watch=self.watch,
             closest_time=self.closest_time,
@@ -138,3 +169,14 @@ class SolvedRun:
             step=self.segments[0].step if self.segments else self.elapsed / max(self.steps, 1),
             wall_time=self.wall_time,
         )
+
+
+def _about(origin: tuple[Floats, Floats], state: State) -> State:
+    """Return a state about its barycentre: tolerances are relative to what moves there."""
+    position, velocity, attitude, spin = state.si
+    return State(
+        quantity(position - origin[0], "m"),
+        quantity(velocity - origin[1], "m / s"),
+        attitude,
+        quantity(spin, "rad / s"),
+    )

@@ -10,7 +10,7 @@ from astropy.units import Quantity
 
 from binaryast import orbits
 from binaryast.errors import InputError
-from binaryast.orbits import ZERO, Orbit, from_orbits
+from binaryast.orbits import ZERO, Orbit, from_orbits, is_celestial
 from binaryast.system import System, rotation
 from binaryast.units import Floats, as_quantity, brief, quantity, to_si
 from binaryast.values import Value
@@ -267,7 +267,9 @@ class State(Value):
         (3, 3)
         """
         _check_kind(system)
-        return cls._from_motion(from_orbits(system, orbits, pole, spins, poles), epoch, frame, pole)
+        motion = from_orbits(system, orbits, pole, spins, poles)
+        celestial = next((one for one in (pole, *(poles or {}).values()) if is_celestial(one)), pole)
+        return cls._from_motion(motion, epoch, frame, celestial)
 
     @classmethod
     def _from_motion(cls, motion: orbits.Motion, epoch: Time | None, frame: str | None, pole: Any) -> "State":

@@ -16,6 +16,7 @@ from binaryast.schedule import SLACK, Segment
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.units import Floats, brief
+from binaryast.working.base import coinciding
 
 CHUNK_SECONDS = 0.1  # between two looks at the keyboard
 
@@ -55,10 +56,10 @@ class SteppedRun:
         """Look at the start: overlap; and keep the references."""
         w = self.working
         measures = w.measure(w.state, w.constants)
-        separation = measures[-1]
-        touching = 1 if separation == 0 else w.touching(w.state, w.surfaces, w.state)
+        position = w.from_rows(self.rows[0], self.times[0]).position[0]
+        touching = coinciding(self.system, position) or w.touching(w.state, w.surfaces, w.state)
         if touching:
-            raise overlap(self.system, touching - 1, w.from_rows(self.rows[0], self.times[0]).position[0])
+            raise overlap(self.system, touching - 1, position)
         self.watch.begin(measures, float(w.state[w.potential_at]))
 
     def go(self, show: Any) -> None:

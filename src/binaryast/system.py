@@ -120,6 +120,7 @@ class System(Value):
             parameters = model.parameters(bodies[j], bodies[i])
             if not np.all(np.isfinite(parameters)):
                 raise InputError("System: the masses are beyond what can be computed with")
+            parameters.flags.writeable = False
             pairs.append(Pair(i, j, model, parameters))
         self._set(pairs=tuple(pairs))
 
@@ -147,7 +148,8 @@ class System(Value):
     @property
     def reduced_mass(self) -> float:
         """The paper's m = m1 m2/(m1 + m2) of a pair [kg]."""
-        one, two = self.secondary.si.mass, self.primary.si.mass
+        self._only_pair("reduced_mass")
+        one, two = self.bodies[1].si.mass, self.bodies[0].si.mass
         return one * two / (one + two)
 
     def index(self, body: str | int) -> int:
@@ -160,8 +162,8 @@ class System(Value):
         """
         if isinstance(body, str) and body in self.names:
             return self.names.index(body)
-        if isinstance(body, int) and not isinstance(body, bool) and 0 <= body < len(self.bodies):
-            return body
+        if isinstance(body, (int, np.integer)) and not isinstance(body, bool) and 0 <= body < len(self.bodies):
+            return int(body)
         near = did_you_mean(body, self.names) if isinstance(body, str) else ""
         raise InputError(f"{brief(repr(body))} is no body of this system{near}; it has {', '.join(self.names)}")
 

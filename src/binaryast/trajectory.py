@@ -1,6 +1,7 @@
 """The result of a propagation: arrays with time first, what should be conserved and how well, and how it ended."""
 
 import operator
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -13,7 +14,7 @@ from astropy.units import Quantity
 from scipy.spatial.transform import Rotation
 
 from binaryast import storage
-from binaryast.errors import CheckError, InputError
+from binaryast.errors import CheckError, InputError, StepWarning
 from binaryast.integrators import Integrator
 from binaryast.state import RelativeState, State
 from binaryast.system import ROTATION_TOLERANCE, System
@@ -135,13 +136,22 @@ class Trajectory(Value):
             raise IndexError(f"run[{index}]: there are {len(self)} rows")
         epoch = None if self.epoch is None else self.epoch + TimeDelta(self.time[index])
         if (error := float(_rotation_errors(self.si.attitude[index]).max())) > ROTATION_TOLERANCE:
-            raise InputError(
-                f"run[{index}]: its attitudes are no rotations, ||I - R^T R|| is {error:.3g}: this run left SO(3); "
-                f"give {type(self.integrator).__name__} tighter tolerances, or use ba.LGVI"
+            warnings.warn(
+                f"run[{index}]: its attitudes are no rotations, ||I - R^T R|| is {error:.3g}, and the nearest ones are "
+                f"taken: give {type(self.integrator).__name__} tighter tolerances, or use ba.LGVI",
+                StepWarning,
+                stacklevel=2,
             )
-        return State(
-            self.position[index], self.velocity[index], self.attitude[index], self.spin[index], epoch, self.frame
-        )
+        attitude = self._rotations[index]
+        return State(self.position[index], self.velocity[index], attitude, self.spin[index], epoch, self.frame)
+
+    @cached_property
+    def _rotations(self) -> Floats:
+        """The attitudes, or the rotations nearest to them where they are none (N, n, 3, 3)."""
+        r = self.si.attitude
+        if not np.any(_rotation_errors(r) > ROTATION_TOLERANCE):
+            return r
+        return np.asarray(Rotation.from_matrix(r.reshape(-1, 3, 3)).as_matrix().reshape(r.shape))
 
     def _rows(self, index: slice) -> "Trajectory":
         """Return some of the rows; the figures remain those of the whole run."""
@@ -180,7 +190,8 @@ class Trajectory(Value):
     def relative(self) -> RelativeState:
         """The paper's reduced variables (34)-(39) of a pair, time first."""
         self._only_pair("relative")
-        return RelativeState.from_arrays(*self.si[1:5], epoch=self.epoch, frame=self.frame)
+        position, velocity, _, spin = self.si[1:5]
+        return RelativeState.from_arrays(position, velocity, self._rotations, spin, epoch=self.epoch, frame=self.frame)
 
     @property
     def separation(self) -> Quantity:

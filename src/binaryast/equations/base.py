@@ -1,12 +1,14 @@
 """What all forms of the equations have in common: their variables in a flat array, and the way from and to a state."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from functools import cached_property
 from math import prod
 from typing import Any, NamedTuple
 
 import numpy as np
 from astropy.time import Time
+from astropy.units import Quantity
 
 from binaryast.equations.legendre import Inertial, Relative, Snapshot
 from binaryast.errors import InputError, did_you_mean
@@ -71,7 +73,7 @@ class Equations(ABC):
         if not isinstance(system, System):
             raise InputError(f"equations: system: expected a ba.System, got {brief(system)}")
         for name, value, known in (("frame", frame, FRAMES), ("form", form, FORMS)):
-            if value not in known:
+            if not isinstance(value, str) or value not in known:
                 near = did_you_mean(str(value), known)
                 raise InputError(f"equations: {name}={brief(repr(value))}{near}: expected one of {', '.join(known)}")
         if frame == "relative" and len(system.bodies) > 2:
@@ -105,7 +107,7 @@ class Equations(ABC):
         return sum(prod(shape) for shape in self.variables.values())
 
     def unpack(self, y: Any) -> dict[str, Floats]:
-        """Return the variables by name, as views of the flat array.
+        """Return the variables by name, where it can be as views of the flat array.
 
         Raises
         ------
@@ -118,12 +120,30 @@ class Equations(ABC):
     def _checked(self, y: Any) -> Floats:
         """Return ``y`` as a flat array that kernels take: of floats, its own where it was read-only."""
         try:
+            if isinstance(y, Quantity) or np.asarray(y).dtype.kind not in "iuf":
+                raise TypeError
             array: Floats = np.require(y, np.float64, ["C", "W"])
         except (TypeError, ValueError):
-            raise InputError(f"y: expected a flat array of numbers, got {brief(repr(y))}") from None
+            raise InputError(f"y: expected a flat array of plain numbers, got {brief(repr(y))}") from None
         if array.shape != (self.size,):
             raise InputError(f"y: expected a flat array of {self.size} numbers for {self.numbers}, got {array.shape}")
         return array
+
+    def _call(self, kernel: Callable[..., Any], *arguments: Any) -> Any:
+        """Call a compiled function; what a user's potential raises is said in our words."""
+        try:
+            return kernel(*arguments)
+        except Exception as error:
+            raise InputError(f"gravity: the potential raised {type(error).__name__}: {brief(error)}") from None
+
+    def _finite(self, values: Floats) -> Floats:
+        """Return values, or say that they are no numbers."""
+        if not np.all(np.isfinite(values)):
+            raise InputError(
+                f"{self.numbers}: the result is not a number: bodies in one place, a potential that is wrong there, or "
+                "numbers in y that are none"
+            )
+        return values
 
     def pack(self, **variables: Any) -> Floats:
         """Return a flat array of variables given by name."""
@@ -164,7 +184,7 @@ class Equations(ABC):
         from binaryast.kernels.invariants import invariants
 
         arrays = (np.array(array) for array in self.snapshot(y))
-        U, measures = invariants(*self._inertial.arguments, *arrays)
+        U, measures = self._call(invariants, *self._inertial.arguments, *arrays)
         return Invariants(measures[0], U, np.array(measures[1:4]), np.array(measures[4:7]), measures[7], measures[8])
 
     def snapshot(self, y: Any) -> Snapshot:

@@ -43,9 +43,15 @@ class ContinuousEquations(Equations):
         self.variables = {name: (*rows, 3, 3) if name in ("R", "R2") else (*rows, 3) for name in VARIABLES[corner]}
 
     def rhs(self, t: float, y: Any) -> Floats:  # noqa: ARG002 - SciPy passes the time
-        """Return the rates of ``y``: the right-hand side, with the signature that SciPy's solvers call."""
-        rates: tuple[Floats, ...] = self._kernel(*self._frame.arguments, *self.unpack(y).values())
-        return np.concatenate([rate.ravel() for rate in rates])
+        """Return the rates of ``y``: the right-hand side, with the signature that SciPy's solvers call.
+
+        Raises
+        ------
+        InputError
+            For an array of another length, or where a rate is not a number.
+        """
+        rates = self._call(self._kernel, *self._frame.arguments, *self.unpack(y).values())
+        return self._finite(np.concatenate([rate.ravel() for rate in rates]))
 
     def scales(self, y: Any) -> Floats:
         """Return the size of each variable in units of the system, for the absolute tolerances of a solver.

@@ -37,6 +37,7 @@ KERNELS: dict[tuple[str, str], Callable[..., Any]] = {
     ("relative", "hamiltonian"): discrete.hamiltonian_relative,
 }
 MATRICES = ("R", "R2", "next_R", "next_R2")
+MOST_STEPS = 10**15
 
 
 class DiscreteEquations(Equations):
@@ -82,16 +83,18 @@ class DiscreteEquations(Equations):
         StepError
             Where a body would turn too far in one step, for which (128) has no solution.
         InputError
-            For an array of another length, or steps that are no whole number.
+            For an array of another length, steps that are no whole number, or where the result is not a number.
         """
-        if not isinstance(steps, (int, np.integer)) or (self.summed and steps < 0):
+        whole = isinstance(steps, (int, np.integer)) and not isinstance(steps, bool) and abs(int(steps)) <= MOST_STEPS
+        if not whole or (self.summed and steps < 0):
             raise InputError(f"steps: expected a whole number{' >= 0' if self.summed else ''}, got {brief(steps)}")
-        result: Floats = np.array(y, dtype=np.float64)
+        result = self._finite(self._checked(y).copy())
         variables = list(self.unpack(result).values())
         h = self.h if steps >= 0 else -self.h
         if self.form == "lagrangian" and steps < 0:  # the second configuration becomes the first
             variables = [*variables[len(variables) // 2 :], *variables[: len(variables) // 2]]
-        status: int = self._kernel(*self._frame.arguments, h, abs(int(steps)), *variables)
+        status = self._call(self._kernel, *self._frame.arguments, h, abs(int(steps)), *variables)
+        self._finite(result)
         if status != COMPLETED:
             raise StepError(
                 f"step: {self.h:g} s turns {self.system.names[status - NO_ROTATION]} too far: the implicit equation "

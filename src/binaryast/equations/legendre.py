@@ -69,7 +69,8 @@ class Inertial:
     def differences(self, h: float, x: Floats, gamma: Floats, Pi: Floats, R: Floats) -> Variables:
         """Return the differences of momenta, by (86) and (90)."""
         dU, M = self._derivatives(x, R)
-        return {"x": x, "R": R, "D": h / self.m[:, None] * (gamma - h / 2 * dU), "g": h * (Pi + h / 2 * M)}
+        rigid = np.any(self.J, axis=(-2, -1))[:, None]
+        return {"x": x, "R": R, "D": h / self.m[:, None] * (gamma - h / 2 * dU), "g": rigid * h * (Pi + h / 2 * M)}
 
     def from_differences(self, h: float, x: Floats, R: Floats, D: Floats, g: Floats) -> Snapshot:
         """Return the snapshot of differences, by (86) and (90)."""
@@ -179,7 +180,7 @@ class Relative:
             "x2": x2,
             "D": h / self.m * (Gamma - h / 2 * dU),
             "g": h * (Pi - h / 2 * M),
-            "g2": h * (Pi2 + h / 2 * (np.cross(X, dU) + M)),
+            "g2": h * (Pi2 + h / 2 * (np.cross(X, dU) + M)) if np.any(self.J2) else np.zeros(3),
             "D2": h / self.m2 * (gamma2 + h / 2 * R2 @ dU),
         }
 

@@ -8,7 +8,7 @@ A body whose inertia is zero is a point, which does not turn.
 import numpy as np
 from numba import types
 
-from binaryast.kernels.derivatives import of_bodies, of_pair
+from binaryast.kernels.derivatives import of_bodies, of_pair, of_rigid
 from binaryast.kernels.jit import (
     ARRAY,
     BODY_MATRICES,
@@ -61,7 +61,7 @@ def hamiltonian_inertial(
     for i in range(len(m)):
         Omega = angular_velocity(J[i], Pi[i])
         dgamma[i] = -dU[i]  # (29)
-        dPi[i] = M[i] - np.cross(Omega, Pi[i])  # (30)
+        dPi[i] = of_rigid(J[i], M[i] - np.cross(Omega, Pi[i]))  # (30)
         dx[i] = gamma[i] / m[i]  # (31)
         dR[i] = R[i] @ hat(Omega)  # (32)
     return dgamma, dPi, dx, dR
@@ -127,8 +127,8 @@ def hamiltonian_relative(
     Omega = angular_velocity(R @ J1 @ R.T, Pi)
     Omega2 = angular_velocity(J2, Pi2)
     dGamma = -dU - np.cross(Omega2, Gamma)  # (63)
-    dPi = -M - np.cross(Omega2, Pi)  # (64)
-    dPi2 = np.cross(X, dU) + M - np.cross(Omega2, Pi2)  # (65)
+    dPi = of_rigid(J1, -M - np.cross(Omega2, Pi))  # (64)
+    dPi2 = of_rigid(J2, np.cross(X, dU) + M - np.cross(Omega2, Pi2))  # (65)
     dX = Gamma / m - np.cross(Omega2, X)  # (66)
     dR = hat(Omega) @ R - hat(Omega2) @ R  # (67)
     dgamma2 = R2 @ dU  # (68)

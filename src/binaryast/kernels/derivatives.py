@@ -11,6 +11,14 @@ PRIMARY, SECONDARY, BEGIN, END = 0, 1, 2, 3
 
 
 @jit(allocates=True)
+def of_rigid(J: Array, value: Array) -> Array:
+    """Return what turns a body, and zero for a point, whose inertia is zero: round-off would give it a momentum."""
+    if J[0, 0] + J[1, 1] + J[2, 2] == 0.0:
+        return np.zeros(3)
+    return value
+
+
+@jit(allocates=True)
 def of_pair(potentials: Array, k: int, p: Array, X: Array, R: Array) -> tuple[float, Array, Array]:
     """Return U, dU/dX and the moment M (54) of the k-th pair."""
     potential = pointer_at(potentials, k)

@@ -13,7 +13,7 @@ A body whose inertia is zero is a point, which does not turn.
 import numpy as np
 from numba import types
 
-from binaryast.kernels.derivatives import of_bodies, of_pair
+from binaryast.kernels.derivatives import of_bodies, of_pair, of_rigid
 from binaryast.kernels.implicit import solve
 from binaryast.kernels.jit import (
     ARRAY,
@@ -112,7 +112,7 @@ def summed_inertial(
         _, dU, M = of_bodies(potentials, p, pairs, x, R)
         for i in range(len(m)):
             D[i] = D[i] - h**2 / m[i] * dU[i]  # (78)
-            g[i] = F[i].T @ g[i] + h**2 * M[i]  # (79), J_d F - F^T J_d being F^T (F J_d - J_d F^T) F
+            g[i] = of_rigid(J[i], F[i].T @ g[i] + h**2 * M[i])  # (79), J_d F - F^T J_d being F^T (F J_d - J_d F^T) F
     return COMPLETED
 
 
@@ -143,7 +143,7 @@ def hamiltonian_inertial(
         _, next_dU, next_M = of_bodies(potentials, p, pairs, x, R)
         for i in range(len(m)):
             gamma[i] = gamma[i] - h / 2 * dU[i] - h / 2 * next_dU[i]  # (94)
-            Pi[i] = F[i].T @ Pi[i] + h / 2 * F[i].T @ M[i] + h / 2 * next_M[i]  # (96)
+            Pi[i] = of_rigid(J[i], F[i].T @ Pi[i] + h / 2 * F[i].T @ M[i] + h / 2 * next_M[i])  # (96)
         dU, M = next_dU, next_M
     return COMPLETED
 
@@ -228,8 +228,8 @@ def summed_relative(
         x2[:] = x2 + D2
         _, dU, M = of_pair(potentials, 0, p, X, R)
         D[:] = F2.T @ D - h**2 / m * dU  # (112)
-        g[:] = F2.T @ g - h**2 * M  # (113)
-        g2[:] = F2.T @ g2 + h**2 * np.cross(X, dU) + h**2 * M  # (114)
+        g[:] = of_rigid(J1, F2.T @ g - h**2 * M)  # (113)
+        g2[:] = of_rigid(J2, F2.T @ g2 + h**2 * np.cross(X, dU) + h**2 * M)  # (114)
         D2[:] = D2 + h**2 / m2 * (R2 @ dU)  # (117)
     return COMPLETED
 
@@ -272,10 +272,9 @@ def hamiltonian_relative(
         next_R2 = R2 @ F2  # (127)
         _, next_dU, next_M = of_pair(potentials, 0, p, next_X, next_R)
         Gamma[:] = F2.T @ (Gamma - h / 2 * dU) - h / 2 * next_dU  # (119)
-        Pi[:] = F2.T @ (Pi - h / 2 * M) - h / 2 * next_M  # (120)
-        Pi2[:] = (
-            F2.T @ (Pi2 + h / 2 * np.cross(X, dU) + h / 2 * M) + h / 2 * np.cross(next_X, next_dU) + h / 2 * next_M
-        )  # (121)
+        Pi[:] = of_rigid(J1, F2.T @ (Pi - h / 2 * M) - h / 2 * next_M)  # (120)
+        bracket = Pi2 + h / 2 * np.cross(X, dU) + h / 2 * M
+        Pi2[:] = of_rigid(J2, F2.T @ bracket + h / 2 * np.cross(next_X, next_dU) + h / 2 * next_M)  # (121)
         x2[:] = x2 + h * gamma2 / m2 + h**2 / (2 * m2) * (R2 @ dU)  # (125)
         gamma2[:] = gamma2 + h / 2 * (R2 @ dU) + h / 2 * (next_R2 @ next_dU)  # (126)
         X[:], R[:], R2[:], dU, M = next_X, next_R, next_R2, next_dU, next_M

@@ -23,6 +23,14 @@ class Motion(NamedTuple):
     potential_energy: Floats
 
 
+def coinciding(system: System, position: Floats) -> int:
+    """Return which pair of mass centres (n, 3) lies in one place, counted from 1, or 0."""
+    for k, pair in enumerate(system.pairs, start=1):
+        if np.array_equal(position[pair.primary], position[pair.secondary]):
+            return k
+    return 0
+
+
 class Working(ABC):
     """The arrays that the compiled loop works on, and the compiled functions that know their layout.
 

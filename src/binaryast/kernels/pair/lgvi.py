@@ -2,6 +2,7 @@
 
 It is the printed map in other variables: the relative position in inertial axes instead of the primary's frame, each
 angular momentum in its own body's frame, attitudes as unit quaternions, and (123), (124) solved in Cayley coordinates.
+Of the reconstruction only (127) is stepped: instead of (125) and (126) the barycentre moves uniformly.
 Values travel as tuples, which the compiler keeps in registers.
 """
 

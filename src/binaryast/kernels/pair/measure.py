@@ -21,7 +21,7 @@ from binaryast.kernels.so3 import cross, dot, rotate, rotation_error
 
 @jit(MEASURE)
 def measure(state: Array, constants: Array) -> Measures:
-    """Return E of section 5.1, pi_T (3), gamma_T (3), which a pair keeps by construction, ||I - R^T R|| and |x|."""
+    """Return E and pi_T (3) of section 5.1 about the barycentre, where gamma_T (3) is 0; ||I - R^T R||; and |x|."""
     mass = constants[REDUCED_MASS]
     x, v = vector_at(state, POSITION), vector_at(state, VELOCITY)
     p2, p1 = vector_at(state, MOMENTUM_2), vector_at(state, MOMENTUM_1)
