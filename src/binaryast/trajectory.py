@@ -151,7 +151,8 @@ class Trajectory(Value):
         r = self.si.attitude
         if not np.any(_rotation_errors(r) > ROTATION_TOLERANCE):
             return r
-        return np.asarray(Rotation.from_matrix(r.reshape(-1, 3, 3)).as_matrix().reshape(r.shape))
+        matrices = r.reshape(-1, 3, 3).copy()  # SciPy below 1.15 takes no read-only array
+        return np.asarray(Rotation.from_matrix(matrices).as_matrix().reshape(r.shape))
 
     def _rows(self, index: slice) -> "Trajectory":
         """Return some of the rows; the figures remain those of the whole run."""
