@@ -388,5 +388,17 @@ def test_frame_and_integrator(folder: Path, capsys: pytest.CaptureFixture) -> No
     assert cli.main(["run", "sn263", "--frame", "relative", *arguments]) == 2
     assert "for a pair" in json.loads(capsys.readouterr().out)["message"]
     assert cli.main(["run", "didymos", "--integrator", "RungeKutta", *arguments]) == 0
-    assert cli.main(["run", "didymos.h5", "--integrator", "LGVI", "--frame", "inertial", *arguments]) == 2
+    capsys.readouterr()
+    for options, expected in (
+        ([], "RungeKutta(rtol=1e-12, atol=1e-12, step=None"),
+        (["--frame", "inertial"], "frame='inertial'"),
+        (["--integrator", "RungeKutta", "--step", "100s"], "step=<Quantity 100. s>"),
+        ([], "step=<Quantity 100. s>, method='DOP853', frame='inertial'"),
+        (["--step", "50s"], "LGVI(step=<Quantity 50. s>"),
+    ):
+        assert cli.main(["run", "didymos.h5", *options, *arguments, "-o", "didymos.h5"]) == 0
+        assert expected in json.loads(capsys.readouterr().out)["integrator"]
+    assert cli.main(["run", "didymos", "--integrator", "RungeKutta", *arguments]) == 0
+    assert cli.main(["run", "didymos.h5", "--integrator", "LGVI", *arguments]) == 2
     assert "--step" in capsys.readouterr().err
+    assert cli.main(["run", "sn263", "--duration", "2h", "--no-picture"]) == 0  # its save_every is longer

@@ -162,6 +162,10 @@ def test_a_potential_that_fails_on_the_way_leaves_good_rows(kind: int, step: u.Q
     if kind != 1:
         with pytest.raises(InputError, match=r"gravity: the potential raised|not a number"):
             equations.rhs(0.0, equations.from_state(far))
+        for frame in ("relative", "inertial"):
+            steps = ba.equations.discrete(system, step=10 * u.s, frame=frame)
+            with pytest.raises(InputError, match=r"gravity: |not a number"):
+                steps.advance(steps.from_state(far), 3)
 
 
 def test_a_point_may_come_first() -> None:

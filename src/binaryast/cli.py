@@ -301,11 +301,13 @@ def _integrator(before: "Integrator", step: Any, options: argparse.Namespace) ->
     """Return the integrator that the options ask for, the scenario's or the earlier run's where they do not."""
     from binaryast.integrators import LGVI, RungeKutta, Stepping
 
+    if step is None and options.integrator is None and options.frame is None:
+        return before
     kind = options.integrator or ("LGVI" if step is not None else type(before).__name__)
     frame = before.frame if options.frame is None else options.frame
     if kind == "RungeKutta":
         tight = before if isinstance(before, RungeKutta) else RungeKutta()
-        return RungeKutta(tight.rtol, tight.atol, step, tight.method, frame)
+        return RungeKutta(tight.rtol, tight.atol, tight.step if step is None else step, tight.method, frame)
     if step is None and isinstance(before, Stepping):
         step = before.step
     if step is None:

@@ -96,6 +96,8 @@ class DiscreteEquations(Equations):
         status = self._call(self._kernel, *self._frame.arguments, h, abs(int(steps)), *variables)
         self._finite(result)
         if status != COMPLETED:
+            at = self.snapshot(result)
+            self._finite(np.concatenate([part.ravel() for part in self._inertial.derivatives(at.x, at.R)]))
             raise StepError(
                 f"step: {self.h:g} s turns {self.system.names[status - NO_ROTATION]} too far: the implicit equation "
                 "(128) has a solution only for h Omega < 1: take a smaller step"

@@ -68,13 +68,13 @@ class Inertial:
 
     def differences(self, h: float, x: Floats, gamma: Floats, Pi: Floats, R: Floats) -> Variables:
         """Return the differences of momenta, by (86) and (90)."""
-        dU, M = self._derivatives(x, R)
+        dU, M = self.derivatives(x, R)
         rigid = np.any(self.J, axis=(-2, -1))[:, None]
         return {"x": x, "R": R, "D": h / self.m[:, None] * (gamma - h / 2 * dU), "g": rigid * h * (Pi + h / 2 * M)}
 
     def from_differences(self, h: float, x: Floats, R: Floats, D: Floats, g: Floats) -> Snapshot:
         """Return the snapshot of differences, by (86) and (90)."""
-        dU, M = self._derivatives(x, R)
+        dU, M = self.derivatives(x, R)
         return self.from_momenta(self.m[:, None] * D / h + h / 2 * dU, g / h - h / 2 * M, x, R)
 
     def from_configurations(self, h: float, x: Floats, R: Floats, next_x: Floats, next_R: Floats) -> Snapshot:
@@ -95,7 +95,7 @@ class Inertial:
             "R": 1.0,
         }
 
-    def _derivatives(self, x: Floats, R: Floats) -> tuple[Floats, Floats]:
+    def derivatives(self, x: Floats, R: Floats) -> tuple[Floats, Floats]:
         """Return dU/dx_i and M_i."""
         # copies, for compiled functions take no read-only arrays
         _, dU, M = derivatives(self.potentials, self.parameters, self.pairs, np.array(x), np.array(R))
