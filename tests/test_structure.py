@@ -1,5 +1,6 @@
 """What the maps keep; the figures are printed by ``python -m validation.structure``."""
 
+import astropy.units as u
 import numpy as np
 import pytest
 from validation import structure
@@ -36,8 +37,6 @@ def test_forward_and_back_returns(count: int, bound: float) -> None:
 
 @pytest.mark.parametrize("frame", ["relative", "inertial"])
 def test_forward_and_back_as_printed(frame: str) -> None:
-    import astropy.units as u
-
     system, state = tumbling_pair()
     for form in ("hamiltonian", "lagrangian"):
         equations = ba.equations.discrete(system, step=20 * u.s, frame=frame, form=form)

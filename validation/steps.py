@@ -4,8 +4,15 @@ import astropy.units as u
 import numpy as np
 
 import binaryast as ba
+from binaryast.equations.legendre import Snapshot
 from binaryast.outcome import Watch
 from binaryast.working import Working
+
+
+def snapshot(w: Working, time: float = 0.0) -> Snapshot:
+    """Return where a working state is now, ``time`` [s] after the start."""
+    motion = w.from_rows(w.state[None, : w.row_size], np.array([time]))
+    return Snapshot(motion.velocity[0], motion.spin[0], motion.position[0], motion.attitude[0])
 
 
 def take_steps(w: Working, h: float, count: int, *, save: int = 0, touching: bool = False) -> np.ndarray:

@@ -20,7 +20,7 @@ import binaryast as ba
 from binaryast import working
 from binaryast.equations.legendre import Snapshot
 from validation.cases import four_bodies, tumbling_pair
-from validation.steps import take_steps
+from validation.steps import snapshot, take_steps
 
 Map = Callable[[ba.System, ba.State, float], Snapshot]
 UNIT_OF_ENERGY = 2 / 9 / ba.constants.G  # J: the paper's of the dumbbells, their reduced mass at 1 m2/s2
@@ -32,8 +32,7 @@ def production(system: ba.System, state: ba.State, h: float, *, inertial: bool) 
     """Take one production step."""
     w = working.of(system, state, inertial=inertial)
     take_steps(w, h, 1)
-    motion = w.from_rows(w.state[None, : w.row_size], np.array([h]))
-    return Snapshot(motion.velocity[0], motion.spin[0], motion.position[0], motion.attitude[0])
+    return snapshot(w, h)
 
 
 def printed(system: ba.System, state: ba.State, h: float, *, frame: str) -> Snapshot:

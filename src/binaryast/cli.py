@@ -115,11 +115,7 @@ def parser() -> argparse.ArgumentParser:
     running.add_argument("--degree", type=int, choices=(0, 2), help="degree of gravity: 0 (point masses) or 2")
     running.add_argument("--integrator", choices=("LGVI", "RungeKutta"), help="method (default: LGVI)")
     running.add_argument("--order", type=int, choices=(2,), default=2, help="order of the method (default: 2)")
-    running.add_argument(
-        "--frame",
-        choices=("relative", "inertial"),
-        help="whose variables are stepped",
-    )
+    running.add_argument("--frame", choices=("relative", "inertial"), help="whose variables are stepped")
     _file(running.add_argument("-o", "--output", metavar="FILE.h5", help="where to write (default: NAME.h5 here)"))
     running.add_argument("--no-picture", action="store_true", help="write no picture beside the file")
     running.add_argument("--force", action="store_true", help="replace files that exist")

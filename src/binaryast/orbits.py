@@ -165,13 +165,6 @@ def _separation(system: System, rate: float, synchronous: Sequence[bool]) -> flo
         ) from None
 
 
-def from_elements(system: System, orbit: Orbit, pole: Any, spins: Sequence[Any]) -> Motion:
-    """Return a pair on an osculating Keplerian orbit; see `binaryast.State.from_elements`."""
-    gm = system.primary.si.gm + system.secondary.si.gm
-    position, velocity, axes = orbit.place(gm, pole_axes(pole))
-    return _motion(system, position, velocity, axes, _spin_vectors(system, spins, [orbit.rate(gm)] * 2))
-
-
 def from_orbits(
     system: System, orbits: Sequence[Orbit], pole: Any, spins: Sequence[Any], poles: Mapping[str, Any] | None
 ) -> Motion:

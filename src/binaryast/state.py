@@ -211,7 +211,7 @@ class State(Value):
             true_anomaly,
             mean_anomaly,
         )
-        return cls._from_motion(orbits.from_elements(system, orbit, pole, spins), epoch, frame, pole)
+        return cls._from_motion(from_orbits(system, [orbit], pole, spins, None), epoch, frame, pole)
 
     @classmethod
     def from_orbits(

@@ -1,8 +1,8 @@
 """A run by compiled steps: equal steps in segments, the loop called in chunks, and how it ended."""
 
 import time
+from collections.abc import Callable
 from math import pi
-from typing import Any
 
 import numpy as np
 
@@ -62,7 +62,7 @@ class SteppedRun:
             raise overlap(self.system, touching - 1, position)
         self.watch.begin(measures, float(w.state[w.potential_at]))
 
-    def go(self, show: Any) -> None:
+    def go(self, show: Callable[[float], None]) -> None:
         """Take all segments, as far as it goes.
 
         Raises
@@ -78,7 +78,7 @@ class SteppedRun:
         if self.steps == 0 and status.NO_ROTATION <= self.code < status.CONTACT:
             raise self._turn_error()
 
-    def _take(self, segment: Segment, show: Any) -> None:
+    def _take(self, segment: Segment, show: Callable[[float], None]) -> None:
         """Take one segment, in chunks short enough for the keyboard and the progress bar."""
         rows = np.empty((segment.steps // segment.stride, self.working.row_size))
         self.rows.append(rows)

@@ -4,14 +4,13 @@ import astropy.units as u
 import numpy as np
 import pytest
 from validation.cases import tumbling_pair, wobbling_pair
-from validation.steps import take_steps
+from validation.steps import snapshot, take_steps
 
 import binaryast as ba
 from binaryast import working
 from binaryast.equations.legendre import Snapshot
 from binaryast.kernels import loop, status
 from binaryast.kernels.pair import lgvi
-from binaryast.working import Working
 from tests.conftest import attitude_angle
 
 
@@ -19,12 +18,6 @@ def printed(system: ba.System, state: ba.State, h: float, count: int) -> Snapsho
     """Take steps of (118)-(127) as printed."""
     equations = ba.equations.discrete(system, step=h * u.s, frame="relative", form="hamiltonian")
     return equations.snapshot(equations.advance(equations.from_state(state), count))
-
-
-def moment(w: Working, time: float) -> Snapshot:
-    """Return where the working state is now."""
-    motion = w.from_rows(w.state[None, : w.row_size], np.array([time]))
-    return Snapshot(motion.velocity[0], motion.spin[0], motion.position[0], motion.attitude[0])
 
 
 PAIRS = {"tumbling": tumbling_pair, "wobbling": wobbling_pair}
@@ -45,7 +38,7 @@ def test_it_is_the_printed_map(name: str, h: float, count: int, bound: float) ->
     expected = printed(system, state, h, count)
     w = working.of(system, state)
     take_steps(w, h, count)
-    found = moment(w, h * count)
+    found = snapshot(w, h * count)
     for one, two in ((found.x, expected.x), (found.v, expected.v)):
         assert np.abs((one[1] - one[0]) - (two[1] - two[0])).max() < bound * np.linalg.norm(two[1] - two[0])
         assert np.abs(one - two).max() < bound * np.linalg.norm(two[1] - two[0])
@@ -58,7 +51,7 @@ def test_one_step_is_the_printed_one_to_the_last_digits() -> None:
     expected = printed(system, state, 30.0, 1)
     w = working.of(system, state)
     take_steps(w, 30.0, 1)
-    found = moment(w, 30.0)
+    found = snapshot(w, 30.0)
     assert np.linalg.norm(found.x - expected.x) < 1e-15 * np.linalg.norm(expected.x[1] - expected.x[0])
     assert attitude_angle(found.R, expected.R) < 1e-15
 
@@ -69,19 +62,6 @@ def test_the_state_is_untouched_where_a_step_has_no_solution() -> None:
     before = w.state.copy()
     assert lgvi.step(w.state, w.constants, w.attraction, w.parameters, 5000.0) == status.NO_ROTATION
     np.testing.assert_array_equal(w.state, before)
-
-
-def test_nothing_else_influences_the_next_step() -> None:
-    """A copy of the array goes on bit for bit: it is a checkpoint."""
-    system, state = tumbling_pair()
-    w = working.of(system, state)
-    take_steps(w, 20.0, 500)
-    copy = working.of(system, state)
-    copy.state[:] = w.state
-    take_steps(w, 20.0, 500)
-    take_steps(copy, 20.0, 200)
-    take_steps(copy, 20.0, 300)
-    np.testing.assert_array_equal(w.state, copy.state)
 
 
 def test_compensated_sums_pay() -> None:

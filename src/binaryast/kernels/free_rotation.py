@@ -21,8 +21,8 @@ def turn(
     q: Quaternion, rq: Quaternion, p: Vector, rp: Vector, inverse: Vector, ratios: Vector, h: float
 ) -> tuple[Quaternion, Quaternion, Vector, Vector, bool]:
     """Turn one body freely for h; whether the implicit equation had a solution is the last value."""
-    c, iterations = solve_cayley(inverse, ratios, (h * p[0], h * p[1], h * p[2]))  # (123), (124)
+    c, iterations = solve_cayley(inverse, ratios, (h * p[0], h * p[1], h * p[2]))  # (95), (123), (124)
     f = cayley(c)
-    q, rq = turn_quaternion(q, rq, f)  # (122), (127)
-    p, rp = add_vector(p, rp, 1.0, turn_momentum(p, f))  # the F^T of (120), (121)
+    q, rq = turn_quaternion(q, rq, f)  # (97), (122), (127)
+    p, rp = add_vector(p, rp, 1.0, turn_momentum(p, f))  # the F^T of (96), (120), (121)
     return q, rq, p, rp, iterations >= 0

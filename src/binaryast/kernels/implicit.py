@@ -3,8 +3,8 @@
 `solve` is the paper's: exponential coordinates, any inertia matrix. `solve_cayley` is the same equation in the body's
 principal axes and Cayley coordinates, where it is a polynomial; the production steps use it. About a principal axis
 both say sin(theta) = h Omega, theta being the turn in one step: there is no solution for h Omega >= 1. About other
-axes the branch of small turns ends between 1 and 1.26 (the largest seen); both refuse g from h Omega = |J^-1 g| = 1 on
-for every axis, for beyond it another branch may lie nearer.
+axes the branch of small turns ends somewhat later; both refuse g from h Omega = |J^-1 g| = 1 on for every axis, for
+beyond it another branch may lie nearer.
 """
 
 from math import asin, sqrt

@@ -29,7 +29,7 @@ WATCH_SIZE = 14
 
 
 def loop_signature(attraction: Any) -> Any:
-    """Return the signature of `advance` for one potential or a list of them."""
+    """Return the signature of `advance` for one potential or a table of them."""
     return types.int64(
         types.FunctionType(step_signature(attraction)),
         types.FunctionType(MEASURE),

@@ -1,6 +1,6 @@
 """A table of pair potentials: one pointer for each pair of bodies, so that one compilation serves any number of them.
 
-numba's typed list could hold them, but reading it needs reference counting, which costs a tenth of a step. Here the
+numba's typed list could hold them, but reading it needs reference counting, which the steps do without. Here the
 pointers lie, as they are, in an array of whole numbers.
 """
 

@@ -4,7 +4,7 @@ Quaternions are (x, y, z, w), scalar last; q and -q are the same attitude. Matri
 numbers, row by row, and vectors three: tuples stay in registers, where small arrays would cost two to three times more.
 """
 
-from math import atan2, cos, sin, sqrt
+from math import cos, sin, sqrt
 
 import numpy as np
 
@@ -135,17 +135,6 @@ def cayley(c: Vector) -> Quaternion:
     """Return the unit quaternion of the rotation by 2 atan|c| about c."""
     w = 1.0 / sqrt(1.0 + dot(c, c))
     return w * c[0], w * c[1], w * c[2], w
-
-
-@jit()
-def log(q: Quaternion) -> Vector:
-    """Return the rotation vector f of a unit quaternion, ||f|| <= pi, so that exp S(f) is its matrix."""
-    x, y, z, w = q
-    if w < 0.0:
-        x, y, z, w = -x, -y, -z, -w
-    sine = sqrt(x * x + y * y + z * z)
-    scale = 2.0 if sine < 1e-9 else 2.0 * atan2(sine, w) / sine
-    return scale * x, scale * y, scale * z
 
 
 @jit()

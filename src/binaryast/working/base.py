@@ -45,7 +45,7 @@ class Working(ABC):
     constants, surfaces, parameters : ndarray
         Masses and moments; what may touch; what the potentials need.
     attraction : object
-        The potential of a pair, or a list of one for each pair.
+        The potential of a pair, or the table of one for each pair.
     row_size, potential_at : int
         How much of the state a saved row keeps, and where in it U is.
     measure, touching, advance : callable
