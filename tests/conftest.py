@@ -4,7 +4,7 @@ import hypothesis
 import matplotlib as mpl
 import numpy as np
 import pytest
-from validation.cases import tumbling_pair
+from validation.systems import tumbling_pair
 
 import binaryast as ba
 

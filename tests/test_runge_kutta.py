@@ -3,7 +3,7 @@
 import astropy.units as u
 import numpy as np
 import pytest
-from validation.cases import four_bodies, tumbling_pair
+from validation.systems import four_bodies, tumbling_pair
 
 import binaryast as ba
 from binaryast.errors import ContactError, EndWarning, InputError, StepWarning

@@ -5,7 +5,7 @@ from pathlib import Path
 import astropy.units as u
 import numpy as np
 import pytest
-from validation.cases import four_bodies
+from validation.systems import four_bodies
 
 import binaryast as ba
 from binaryast.errors import ContactError, EndWarning, InputError, StorageError

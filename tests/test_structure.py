@@ -4,8 +4,8 @@ import astropy.units as u
 import numpy as np
 import pytest
 from validation import structure
-from validation.cases import four_bodies, tumbling_pair
 from validation.structure import MAPS, OF_BODIES, UNIT_OF_ENERGY
+from validation.systems import four_bodies, tumbling_pair
 
 import binaryast as ba
 

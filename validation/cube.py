@@ -13,7 +13,8 @@ from scipy.integrate import solve_ivp
 
 import binaryast as ba
 from binaryast.equations.legendre import Snapshot
-from validation.cases import four_bodies, wobbling_pair
+from validation.differences import Difference, difference
+from validation.systems import four_bodies, wobbling_pair
 
 STEPS = 10_000  # of the discrete forms that are compared with each other
 TOLERANCE = 1e-12  # of the continuous ones
@@ -28,20 +29,6 @@ class Case(NamedTuple):
     step: float
     end: float
     steps: tuple[int, int, int]
-
-
-class Difference(NamedTuple):
-    """The largest of all bodies: position over their distance, velocity and spin relative, attitude [rad]."""
-
-    position: float
-    velocity: float
-    attitude: float
-    spin: float
-
-    @property
-    def largest(self) -> float:
-        """The largest of the four, not a number where one is none."""
-        return float(np.max(self))
 
 
 @cache
@@ -74,19 +61,6 @@ def flowed(name: str, frame: str, form: str, tolerance: float = TOLERANCE) -> Sn
     scales = tolerance * equations.scales(y)
     solution = solve_ivp(equations.rhs, (0, end), y, method="DOP853", rtol=tolerance, atol=scales)
     return equations.snapshot(solution.y[:, -1])
-
-
-def difference(one: Snapshot, two: Snapshot) -> Difference:
-    """Return how far two moments are apart, the second being the measure."""
-    spins = np.linalg.norm(two.Omega, axis=1)
-    spin = np.linalg.norm(one.Omega - two.Omega, axis=1)[spins > 0] / spins[spins > 0]
-    attitude = np.linalg.norm(one.R - two.R, axis=(-2, -1)) / np.sqrt(2)
-    return Difference(
-        float(np.linalg.norm(one.x - two.x, axis=1).max() / np.linalg.norm(two.x[1] - two.x[0])),
-        float(np.linalg.norm(one.v - two.v, axis=1).max() / np.linalg.norm(two.v[1] - two.v[0])),
-        float(attitude.max()),
-        float(spin.max()),
-    )
 
 
 def slopes(name: str, frame: str, form: str) -> Difference:

@@ -19,8 +19,8 @@ from scipy.spatial.transform import Rotation
 import binaryast as ba
 from binaryast import working
 from binaryast.equations.legendre import Snapshot
-from validation.cases import four_bodies, tumbling_pair
 from validation.steps import snapshot, take_steps
+from validation.systems import four_bodies, tumbling_pair
 
 Map = Callable[[ba.System, ba.State, float], Snapshot]
 UNIT_OF_ENERGY = 2 / 9 / ba.constants.G  # J: the paper's of the dumbbells, their reduced mass at 1 m2/s2

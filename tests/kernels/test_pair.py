@@ -3,8 +3,8 @@
 import astropy.units as u
 import numpy as np
 import pytest
-from validation.cases import tumbling_pair, wobbling_pair
 from validation.steps import snapshot, take_steps
+from validation.systems import tumbling_pair, wobbling_pair
 
 import binaryast as ba
 from binaryast import working

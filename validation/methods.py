@@ -1,0 +1,87 @@
+"""The methods under test, each as a function from a start to where the bodies are after so many equal steps."""
+
+import warnings
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+import astropy.units as u
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+import binaryast as ba
+from binaryast.equations.legendre import Snapshot
+
+Steps = Callable[[ba.System, ba.State, float, int], Snapshot]  # system, start, time [s], number of steps
+
+
+class Method(NamedTuple):
+    """A method with its order; ``end`` gives where the bodies are after a time in so many steps."""
+
+    name: str
+    order: int
+    end: Steps
+
+
+def propagated(frame: str) -> Steps:
+    """Return the production steps of `binaryast.LGVI` in a frame."""
+
+    def end(system: ba.System, state: ba.State, time: float, count: int) -> Snapshot:
+        step = time / count * (1 + 1e-12) * u.s  # the run takes the largest one up to this that divides the time
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ba.errors.StepWarning)  # long steps show the order
+            run = ba.propagate(
+                system, state, duration=time * u.s, integrator=ba.LGVI(step, frame=frame), save_every=time * u.s
+            )
+        if run.steps != count or run.status != "completed":
+            raise RuntimeError(f"{run.steps} steps, {run.status}, where {count} were to be taken")
+        return snapshot_of(run[-1])
+
+    return end
+
+
+def printed(frame: str) -> Steps:
+    """Return the map as the paper prints it: (118)-(127) in the relative frame, (93)-(97) in the inertial one."""
+
+    def end(system: ba.System, state: ba.State, time: float, count: int) -> Snapshot:
+        equations = ba.equations.discrete(system, step=time / count * u.s, frame=frame)
+        return equations.snapshot(equations.advance(equations.from_state(state), count))
+
+    return end
+
+
+RELATIVE = Method("LGVI, relative frame", 2, propagated("relative"))
+INERTIAL = Method("LGVI, inertial frame", 2, propagated("inertial"))
+PRINTED_RELATIVE = Method("(118)-(127) as printed", 2, printed("relative"))
+PRINTED_INERTIAL = Method("(93)-(97) as printed", 2, printed("inertial"))
+OF_PAIRS = (RELATIVE, INERTIAL, PRINTED_RELATIVE, PRINTED_INERTIAL)
+OF_BODIES = (INERTIAL, PRINTED_INERTIAL)
+
+
+def snapshot_of(state: ba.State) -> Snapshot:
+    """Return a state as the arrays that differences are taken of."""
+    position, velocity, attitude, spin = state.si
+    return Snapshot(velocity, spin, position, attitude)
+
+
+def limit(method: Method, system: ba.System, state: ba.State, time: float, counts: Sequence[int]) -> Snapshot:
+    """Return where a method ends as the step goes to zero: its error, a series in h^2, extrapolated away.
+
+    ``counts`` are the numbers of steps, each twice the one before; every one of them takes another power of h^2 away.
+    A symmetric method has no odd powers.
+    """
+    columns = [method.end(system, state, time, count) for count in counts]
+    power = 2.0**method.order
+    while len(columns) > 1:
+        columns = [
+            Snapshot(*(fine + (fine - coarse) / (power - 1) for coarse, fine in zip(one, two, strict=True)))
+            for one, two in pairwise(columns)
+        ]
+        power *= 4
+    end = columns[0]
+    return end._replace(R=Rotation.from_matrix(end.R).as_matrix())
+
+
+def slope(sizes: Sequence[float], errors: Sequence[float]) -> float:
+    """Return the slope of a straight line through logarithms: the order of a method, from its last three errors."""
+    return float(np.polyfit(np.log(sizes[-3:]), np.log(errors[-3:]), 1)[0])
