@@ -32,7 +32,7 @@ def curve(ax: Axes, x: Sequence[float], y: Sequence[float], label: str, index: i
 
 def ticks(ax: Axes, values: Sequence[float]) -> None:
     """Put the ticks of the x axis where the points are, with their plain numbers."""
-    ax.set_xticks(values, [f"{value:.3g}" for value in values])
+    ax.set_xticks(values, [f"{value:.4g}" for value in values])
     ax.set_xticks([], minor=True)
 
 

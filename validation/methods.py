@@ -2,7 +2,6 @@
 
 import warnings
 from collections.abc import Callable, Sequence
-from itertools import pairwise
 from typing import NamedTuple
 
 import astropy.units as u
@@ -11,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 import binaryast as ba
 from binaryast.equations.legendre import Snapshot
+from validation.fitting import to_zero
 
 Steps = Callable[[ba.System, ba.State, float, int], Snapshot]  # system, start, time [s], number of steps
 
@@ -68,17 +68,10 @@ def limit(method: Method, system: ba.System, state: ba.State, time: float, count
     """Return where a method ends as the step goes to zero: its error, a series in h^2, extrapolated away.
 
     ``counts`` are the numbers of steps, each twice the one before; every one of them takes another power of h^2 away.
-    A symmetric method has no odd powers.
+    A symmetric method has no odd powers. Begin with steps so short that the whole error is well below a radian.
     """
-    columns = [method.end(system, state, time, count) for count in counts]
-    power = 2.0**method.order
-    while len(columns) > 1:
-        columns = [
-            Snapshot(*(fine + (fine - coarse) / (power - 1) for coarse, fine in zip(one, two, strict=True)))
-            for one, two in pairwise(columns)
-        ]
-        power *= 4
-    end = columns[0]
+    ends = [method.end(system, state, time, count) for count in counts]
+    end = Snapshot(*(to_zero(values, method.order) for values in zip(*ends, strict=True)))
     return end._replace(R=Rotation.from_matrix(end.R).as_matrix())
 
 
