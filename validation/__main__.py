@@ -10,10 +10,15 @@ from validation import cases, plant, readme, report, runner
 from validation.case import Case, Effort
 from validation.runner import Outcome
 
+EFFORTS = {Effort.QUICK: ["--quick"], Effort.WHOLE: [], Effort.LONG: ["--long"]}
+
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
-    result = argparse.ArgumentParser(prog="python -m validation", description=(__doc__ or "").split(":", 1)[1].strip())
+    result = argparse.ArgumentParser(
+        prog="python -m validation",
+        description="Run cases against oracles and write a report; exit with 1 where a case does not pass.",
+    )
     result.add_argument("cases", nargs="*", metavar="CASE", help="names of cases; all by default")
     effort = result.add_mutually_exclusive_group()
     effort.add_argument("--quick", action="store_const", const=Effort.QUICK, dest="effort", help="under 2 minutes")
@@ -27,7 +32,7 @@ def parser() -> argparse.ArgumentParser:
         "--plant", action="store_true", help="plant mistakes in a copy of the sources, and see that a case fails"
     )
     result.add_argument(
-        "--mistake", action="append", default=[], metavar="NAME", help="with --plant: this one; all by default"
+        "--mistake", action="append", default=[], metavar="NAME", help="plant this one only; may be given again"
     )
     result.set_defaults(effort=Effort.WHOLE)
     return result
@@ -38,7 +43,7 @@ def chosen(names: Sequence[str]) -> list[Case]:
     known = {case.name: case for case in cases.ALL}
     for name in names:
         if name not in known:
-            raise InputError(f"{name!r} is no case{did_you_mean(name, known)}; there are {', '.join(known)}")
+            raise InputError(f"{name!r} is no case{did_you_mean(name, known)} (there are {', '.join(known)})")
     return [known[name] for name in dict.fromkeys(names)] or list(cases.ALL)
 
 
@@ -67,18 +72,24 @@ def run(given: argparse.Namespace) -> int:
         for case in cases.ALL:
             print(f"{case.name:22} {case.question}")
         return 0
-    if given.plant:
-        return plant.main(given.mistake, [case.name for case in chosen(given.cases)])
+    if given.plant or given.mistake:
+        return plant.main(given.mistake, [case.name for case in chosen(given.cases) if not case.missing])
+    if given.readme and given.cases:
+        raise InputError("--readme writes the table of all cases: expected no names, got " + ", ".join(given.cases))
+    report.prepare(given.output)
     outcomes = []
     for outcome in runner.run(chosen(given.cases), given.effort):
         show(outcome)
         outcomes.append(outcome)
-    for path in report.write(given.output, outcomes, given.effort):
+    command = " ".join(["python -m validation", *given.cases, *EFFORTS[given.effort]])
+    for path in report.write(given.output, outcomes, command):
         print(path)
+    print(report.summary(outcomes))
+    if not all(outcome.passed for outcome in outcomes):
+        return 1
     if given.readme:
         readme.write(outcomes)
-    print(report.summary(outcomes))
-    return 0 if all(outcome.passed for outcome in outcomes) else 1
+    return 0
 
 
 if __name__ == "__main__":

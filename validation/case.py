@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
+from importlib import util
 from importlib.metadata import PackageNotFoundError, version
 
 from matplotlib.figure import Figure
@@ -33,8 +34,9 @@ class Check:
     headline : bool
         Whether the README shows it. Such a check runs with every effort, and gives the same figure with each.
     roundoff : bool
-        Whether the error is round-off, or printed digits: what is far below the tolerance then differs from machine to
-        machine and says nothing.
+        Whether the error is round-off, whose digits differ from machine to machine.
+    printed : bool
+        Whether the tolerance is what the oracle's printed digits leave, so that the error may be far below it.
     """
 
     what: str
@@ -44,6 +46,7 @@ class Check:
     shown: str = ""
     headline: bool = False
     roundoff: bool = False
+    printed: bool = False
 
     @property
     def passed(self) -> bool:
@@ -96,18 +99,18 @@ class Case:
     @property
     def missing(self) -> list[str]:
         """The packages that it needs and that are not here."""
-        return [name for name in self.needs if version_of(name) is None]
+        return [name for name in self.needs if util.find_spec(name) is None]
 
     @property
     def oracle_and_version(self) -> str:
         """The oracle, with the versions of the packages that it is made of."""
-        versions = [f"{name} {version_of(name) or 'not installed'}" for name in self.needs]
+        versions = [f"{name} {version_of(name)}" for name in self.needs]
         return f"{self.oracle} ({', '.join(versions)})" if versions else self.oracle
 
 
-def version_of(package: str) -> str | None:
-    """Return the version of a package, None where it is not installed."""
+def version_of(package: str) -> str:
+    """Return the version of a package, or that it has none or is not installed."""
     try:
         return version(package)
     except PackageNotFoundError:
-        return None
+        return "not installed" if util.find_spec(package) is None else "of unknown version"

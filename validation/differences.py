@@ -4,6 +4,7 @@ from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+import binaryast as ba
 from binaryast.equations.legendre import Snapshot
 
 Number = TypeVar("Number", float, np.ndarray)
@@ -23,15 +24,21 @@ class Difference(NamedTuple, Generic[Number]):
         return float(np.max(self))
 
 
+def snapshot_of(state: ba.State) -> Snapshot:
+    """Return a state as the arrays that differences are taken of."""
+    position, velocity, attitude, spin = state.si
+    return Snapshot(velocity, spin, position, attitude)
+
+
 def of_bodies(one: Snapshot, two: Snapshot) -> Difference[np.ndarray]:
-    """Return how far two moments are apart, body by body (n,), the second being the measure; 0 where nothing spins."""
+    """Return how far two moments are apart, body by body (n,), the second being the measure."""
     spins = np.linalg.norm(two.Omega, axis=1)
     spin = np.linalg.norm(one.Omega - two.Omega, axis=1)
     return Difference(
         np.linalg.norm(one.x - two.x, axis=1) / np.linalg.norm(two.x[1] - two.x[0]),
         np.linalg.norm(one.v - two.v, axis=1) / np.linalg.norm(two.v[1] - two.v[0]),
         turns(one.R, two.R),
-        np.divide(spin, spins, out=np.zeros_like(spin), where=spins > 0),
+        np.divide(spin, spins, out=np.where(spin > 0, np.inf, 0.0), where=spins > 0),
     )
 
 

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 import binaryast as ba
 from binaryast.equations.legendre import Snapshot
+from validation.differences import snapshot_of
 from validation.fitting import to_zero
 
 Steps = Callable[[ba.System, ba.State, float, int], Snapshot]  # system, start, time [s], number of steps
@@ -34,7 +35,7 @@ def propagated(frame: str) -> Steps:
                 system, state, duration=time * u.s, integrator=ba.LGVI(step, frame=frame), save_every=time * u.s
             )
         if run.steps != count or run.status != "completed":
-            raise RuntimeError(f"{run.steps} steps, {run.status}, where {count} were to be taken")
+            raise RuntimeError(f"expected {count} steps, got {run.steps}: {run.status} {run.message}")
         return snapshot_of(run[-1])
 
     return end
@@ -56,12 +57,6 @@ PRINTED_RELATIVE = Method("(118)-(127) as printed", 2, printed("relative"))
 PRINTED_INERTIAL = Method("(93)-(97) as printed", 2, printed("inertial"))
 OF_PAIRS = (RELATIVE, INERTIAL, PRINTED_RELATIVE, PRINTED_INERTIAL)
 OF_BODIES = (INERTIAL, PRINTED_INERTIAL)
-
-
-def snapshot_of(state: ba.State) -> Snapshot:
-    """Return a state as the arrays that differences are taken of."""
-    position, velocity, attitude, spin = state.si
-    return Snapshot(velocity, spin, position, attitude)
 
 
 def limit(method: Method, system: ba.System, state: ba.State, time: float, counts: Sequence[int]) -> Snapshot:

@@ -32,7 +32,8 @@ class Mistake(NamedTuple):
         path = package / self.file
         text = path.read_text(encoding="utf-8")
         if text.count(self.right) != 1:
-            raise InputError(f"{self.what}: {self.right!r} stands {text.count(self.right)} times in {path}")
+            found = f"{self.right!r} stands {text.count(self.right)} times in {self.file}, expected once"
+            raise InputError(f"{self.what}: {found}: bring MISTAKES up to the sources")
         path.write_text(text.replace(self.right, self.wrong), encoding="utf-8")
 
 
@@ -126,9 +127,8 @@ def attempt(name: str, cases: Sequence[str]) -> Sight:
             raise InputError(f"the copy in {package} is not what runs, but {found.stdout.strip()}")
         command = [sys.executable, "-m", "validation", "--quick", "-o", str(Path(folder) / "report"), *cases]
         result = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-    lines = [line.removeprefix("did not run").removeprefix("FAIL").split() for line in result.stdout.splitlines()
-             if line.startswith(("FAIL", "did not run"))]  # fmt: skip
-    return Sight(name, [words[0] for words in lines], result.stdout + result.stderr, result.returncode == 0)
+    failed = [line.split()[1] for line in result.stdout.splitlines() if line.startswith("FAIL")]
+    return Sight(name, failed, result.stdout + result.stderr, result.returncode == 0)
 
 
 def main(names: Sequence[str], cases: Sequence[str]) -> int:
@@ -136,7 +136,7 @@ def main(names: Sequence[str], cases: Sequence[str]) -> int:
     unknown = [name for name in names if name not in MISTAKES]
     if unknown:
         near = did_you_mean(unknown[0], MISTAKES)
-        raise InputError(f"{unknown[0]!r} is no mistake{near}; there are {', '.join(MISTAKES)}")
+        raise InputError(f"{unknown[0]!r} is no mistake{near} (there are {', '.join(MISTAKES)})")
     chosen = list(dict.fromkeys(["none", *(names or MISTAKES)]))
     missed = 0
     with ThreadPoolExecutor(os.cpu_count()) as pool:

@@ -3,12 +3,14 @@
 import base64
 import html
 import io
+import tempfile
 from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
+from binaryast.errors import InputError
 from binaryast.propagation import provenance
-from validation.case import Check, Effort, Picture
+from validation.case import Check, Picture
 from validation.runner import Outcome
 
 TITLE = "Validation of binaryast"
@@ -24,13 +26,29 @@ p.oracle { color: #444; } code { font-size: 90%; }
 """
 
 
-def write(folder: Path, outcomes: Sequence[Outcome], effort: Effort) -> list[Path]:
+def prepare(folder: Path) -> None:
+    """Make the folder, before anything is run that would be lost without it, and remove the figures of a report before.
+
+    Raises
+    ------
+    InputError
+        Where it cannot be written.
+    """
+    try:
+        (folder / "figures").mkdir(parents=True, exist_ok=True)
+        for old in (folder / "figures").glob("*.svg"):
+            old.unlink()
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise InputError(f"the report cannot be written to {folder} ({error}): choose another folder with -o") from None
+
+
+def write(folder: Path, outcomes: Sequence[Outcome], command: str) -> list[Path]:
     """Write ``report.html``, ``report.md`` and the figures that the latter shows; return the two pages."""
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "figures").mkdir(exist_ok=True)
     for picture in _pictures(outcomes):
         (folder / "figures" / f"{picture.name}.svg").write_bytes(svg(picture))
-    pages = {"report.html": as_html(outcomes, effort), "report.md": as_markdown(outcomes, effort)}
+    pages = {"report.html": as_html(outcomes, command), "report.md": as_markdown(outcomes, command)}
     for name, text in pages.items():
         (folder / name).write_text(text, encoding="utf-8")
     return [folder / name for name in pages]
@@ -61,22 +79,22 @@ def summary(outcomes: Sequence[Outcome]) -> str:
     return f"{text}. Not passed: {', '.join(bad)}." if bad else f"{text}."
 
 
-def _made_by(effort: Effort) -> str:
+def _made_by(command: str) -> str:
     """Return what made the report, so that it can be made again."""
     made = provenance()
-    option = {Effort.QUICK: " --quick", Effort.WHOLE: "", Effort.LONG: " --long"}[effort]
     libraries = ", ".join(f"{name} {made[name]}" for name in ("python", "numpy", "scipy", "numba", "astropy"))
     return (
-        f"Made by `python -m validation{option}` on {datetime.now(UTC):%Y-%m-%d} with binaryast {made['binaryast']} "
+        f"Made by `{command}` on {datetime.now(UTC):%Y-%m-%d} with binaryast {made['binaryast']} "
         f"(kernels {made['kernels']}), {libraries}, on {made['machine']}; G = {made['G']} m3 kg-1 s-2. An error passes "
-        "where it is at most its tolerance; no tolerance is more than ten times the error expected, and each row says "
-        "where the error comes from. Errors of round-off differ in their digits from machine to machine."
+        "where it is at most its tolerance; no tolerance is more than ten times the error that is measured, or what "
+        "printed digits leave, and each row says where the error comes from. Errors of round-off differ in their "
+        "digits from machine to machine."
     )
 
 
-def as_markdown(outcomes: Sequence[Outcome], effort: Effort) -> str:
+def as_markdown(outcomes: Sequence[Outcome], command: str) -> str:
     """Return the report as Markdown; its figures are files in ``figures``."""
-    lines = [f"# {TITLE}", "", summary(outcomes), "", _made_by(effort), ""]
+    lines = [f"# {TITLE}", "", summary(outcomes), "", _made_by(command), ""]
     lines += ["| case | against | checks | nearest to its tolerance | time | |", "|---|---|---|---|---|---|"]
     for o in outcomes:
         lines.append(f"| {' | '.join(_cell(text) for text in _summary_row(o))} |")
@@ -96,12 +114,12 @@ def as_markdown(outcomes: Sequence[Outcome], effort: Effort) -> str:
     return "\n".join(lines) + "\n"
 
 
-def as_html(outcomes: Sequence[Outcome], effort: Effort) -> str:
+def as_html(outcomes: Sequence[Outcome], command: str) -> str:
     """Return the report as one page that needs no other file."""
     parts = [
         f'<!doctype html>\n<html lang="en"><head><meta charset="utf-8"><title>{TITLE}</title>',
         f'<meta name="viewport" content="width=device-width"><style>{STYLE}</style></head><body>',
-        f"<h1>{TITLE}</h1><p><strong>{_text(summary(outcomes))}</strong></p><p>{_text(_made_by(effort))}</p>",
+        f"<h1>{TITLE}</h1><p><strong>{_text(summary(outcomes))}</strong></p><p>{_text(_made_by(command))}</p>",
         _table(
             ("case", "against", "checks", "nearest to its tolerance", "time", ""),
             [_summary_row(o) for o in outcomes],

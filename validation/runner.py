@@ -36,7 +36,7 @@ class Outcome:
     def verdict(self) -> str:
         """In a few words."""
         if self.problem:
-            return "did not run"
+            return "not run" if self.case.missing else "ERROR"
         return "pass" if self.passed else "FAIL"
 
     @property
@@ -58,7 +58,7 @@ def run(cases: Iterable[Case], effort: Effort) -> Iterator[Outcome]:
         findings, problem = None, ""
         if case.missing:
             missing = " and ".join(case.missing)
-            problem = f"{missing} not installed: pip install '.[validation]' (heyoka: on Linux, by conda elsewhere)"
+            problem = f"{missing} not installed: pip install '.[validation]', or conda install -c conda-forge heyoka.py"
         else:
             try:
                 findings = case.run(effort)

@@ -19,11 +19,11 @@ from scipy.spatial.transform import Rotation
 import binaryast as ba
 from binaryast import working
 from binaryast.equations.legendre import Snapshot
+from validation.cases.paper import UNIT_OF_ENERGY
 from validation.steps import snapshot, take_steps
 from validation.systems import four_bodies, tumbling_pair
 
 Map = Callable[[ba.System, ba.State, float], Snapshot]
-UNIT_OF_ENERGY = 2 / 9 / ba.constants.G  # J: the paper's of the dumbbells, their reduced mass at 1 m2/s2
 WIDTH = 2e-3  # of the differences, in units of the system
 WEIGHTS = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))  # of order 8: truncation below 1e-15
 

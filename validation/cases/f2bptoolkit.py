@@ -52,7 +52,7 @@ def run(effort: Effort) -> Findings:
             "half of its last printed digit",
             shown=f"{FINAL_SEPARATION + limit:.7f} m, printed {FINAL_SEPARATION:.6f} m",
             headline=True,
-            roundoff=True,
+            printed=True,
         ),
         Check("order of its error", abs(slope - 2), 0.02, "the next power of the step", shown=f"{slope:.4f}"),
     ]
@@ -68,6 +68,6 @@ def run(effort: Effort) -> Findings:
 CASE = Case(
     "f2bptoolkit",
     "Does the case in F2BPtoolkit's documentation end at the separation that it prints?",
-    "F2BPtoolkit, 1178.444910 m after 10 days",
+    "F2BPtoolkit, as its documentation prints it: 1178.444910 m after 10 days",
     run,
 )

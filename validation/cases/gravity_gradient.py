@@ -154,7 +154,6 @@ def frequency_check(craft: Craft, mode: Mode, frame: str, found: np.ndarray) -> 
         1e-12 + 9 * craft.size2 / SEPARATION**2,
         "the orbit feels the body, by three times (B + C - 2 A)/(m r^2), and rounding",
         shown=", ".join(f"{value:.10f} n" for value in mode.theory),
-        roundoff=True,
     )
 
 
@@ -254,8 +253,8 @@ def picture() -> Picture:
     drawing.legend(right, ncols=2, loc="upper left")
     caption = (
         "Left: a dumbbell swinging in the plane of its orbit, by Jacobi's functions, lines, and in a run, points. "
-        "Right: errors of the frequencies of small librations against the step, second order; in the plane they nearly "
-        "cancel for a frequency of sqrt(3) n."
+        "Right: errors of the frequencies of small librations against the step, second order; in the plane those of "
+        "orbit and swing nearly cancel where the frequency is sqrt(3) n."
     )
     return Picture("gravity-gradient", figure, caption)
 

@@ -7,8 +7,7 @@ import binaryast as ba
 from binaryast.gravity import Gravity
 from validation import drawing, methods
 from validation.case import Case, Check, Effort, Findings, Picture
-from validation.differences import Difference, difference
-from validation.methods import snapshot_of
+from validation.differences import Difference, difference, snapshot_of
 from validation.oracles import gubas
 from validation.oracles.gubas import KM, MEGAJOULE, Rows
 
@@ -63,6 +62,15 @@ def against_lgvi(degree: int) -> tuple[np.ndarray, list[Difference[float]], list
     return rows.time[1:], apart, grown
 
 
+def same_map_twice(degree: int) -> Check:
+    """Return the check that our production steps and (118)-(127) as printed are the same map there."""
+    system, state = gubas.reference(degree, "lgvi_h10").start(MODELS[degree])
+    count = int(SAME_MAP / 10)
+    ends = [method.end(system, state, SAME_MAP, count) for method in (methods.RELATIVE, methods.PRINTED_RELATIVE)]
+    what = f"degree {degree}: our LGVI at 10 s minus (118)-(127) as printed, all quantities, after 36 000 s"
+    return Check(what, difference(*ends).largest, 2e-12, "rounding of products of matrices", roundoff=True)
+
+
 def follow(system: ba.System, state: ba.State, rows: Rows) -> ba.Trajectory:
     """Return our run over the times of GUBAS's rows."""
     return ba.propagate(
@@ -85,18 +93,21 @@ def of_degree(degree: int) -> tuple[list[Check], Picture]:
     time, apart, grown = against_lgvi(degree)
     early, early_rk = time <= SAME_MAP, time_rk <= SAME_MAP
     step_error = "RK78's tolerance of 1e-13 a step, adding up"
-    solver = "where GUBAS stops its Newton iterations; ours go to the last digit"
+    unexplained = (
+        "of GUBAS: the spin of its secondary departs with the square of time. Why is not known; see the row below"
+    )
     checks = []
-    for name, tolerances in (("position", (8e-11, 6e-9, 2e-11)), ("attitude", (2e-10, 5e-8, 3e-9))):
+    for name, tolerances in (("position", (8e-11, 6e-9, 2e-11)), ("attitude", (2e-10, 5e-8, 1e-9))):
         of_rk, of_lgvi = column(rk, name), column(apart, name)
         values = (of_rk[early_rk].max(), of_rk.max(), of_lgvi[early].max())
         what = (
-            f"degree {degree}: limit of our steps - RK78, {name}, up to 10 h",
-            f"degree {degree}: limit of our steps - RK78, {name}, up to 2 days",
-            f"degree {degree}: our LGVI at 10 s - GUBAS's, {name}, up to 36 000 s",
+            f"degree {degree}: limit of our steps minus RK78, {name}, up to 10 h",
+            f"degree {degree}: limit of our steps minus RK78, {name}, up to 2 days",
+            f"degree {degree}: our LGVI at 10 s minus GUBAS's, {name}, up to 36 000 s",
         )
-        why = (step_error, f"{step_error}, and the growth of a perturbation", solver)
+        why = (step_error, f"{step_error}, and the growth of a perturbation", unexplained)
         checks += [Check(what[k], float(values[k]), tolerances[k], why[k], headline=k > 0) for k in range(3)]
+    checks.append(same_map_twice(degree))
     return checks, draw(degree, (time_rk, rk), (time, apart), grown)
 
 
@@ -106,8 +117,8 @@ def draw(degree: int, of_rk: Course, of_lgvi: Course, grown: list[Difference[flo
     labels = {"position": "position, of the distance", "attitude": "attitude [rad]"}
     for ax, (name, label) in zip(panels, labels.items(), strict=True):
         curves = {
-            "our LGVI at 10 s - GUBAS's": of_lgvi,
-            "limit of our steps - GUBAS's RK78": of_rk,
+            "our LGVI at 10 s minus GUBAS's": of_lgvi,
+            "limit of our steps minus GUBAS's RK78": of_rk,
             "ours, start moved by 1e-15": (of_lgvi[0], grown),
         }
         for index, (text, (time, differences)) in enumerate(curves.items()):
@@ -115,10 +126,12 @@ def draw(degree: int, of_rk: Course, of_lgvi: Course, grown: list[Difference[flo
         ax.axvline(SAME_MAP / 3600, color="#999999", lw=0.8, ls=":")
         ax.set(yscale="log", ylabel=label)
     drawing.legend(panels[0], loc="upper left")
+    late = [differences[-1].attitude / differences[-7].attitude for _, differences in curves.values()]
     caption = (
         f"Differences from GUBAS's runs at degree {degree}, beside the growth of a perturbation of 1e-15 of the "
-        "position. All curves turn up together after 36 hours, where the tumbling secondary magnifies what differs: "
-        "the codes agree as well as the motion lets any two codes agree. Dotted: 36 000 s."
+        "position. In the last twelve hours the tumbling secondary magnifies whatever differs: its attitude, "
+        f"{late[2]:.0f}-fold for the perturbation, {late[0]:.0f}-fold for the two LGVIs, {late[1]:.0f}-fold for RK78. "
+        "Dotted: 36 000 s, to which the LGVIs are held to each other."
     )
     return Picture(f"gubas-{degree}", figure, caption)
 
@@ -138,6 +151,6 @@ def run(effort: Effort) -> Findings:
 CASE = Case(
     "gubas",
     "Do two tumbling ellipsoids attract and move as in GUBAS, by its Runge-Kutta 7(8) and its variational integrator?",
-    "GUBAS, rows of its runs kept in validation/references",
+    "GUBAS (its version is not recorded), rows of its runs kept in validation/references",
     run,
 )

@@ -9,13 +9,14 @@ from typing import NamedTuple
 
 import astropy.units as u
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 import binaryast as ba
 from binaryast.equations.legendre import Snapshot
 from validation import drawing, methods, systems
 from validation.case import Case, Check, Effort, Findings, Picture
-from validation.differences import Difference, difference, of_bodies
-from validation.methods import Method, snapshot_of
+from validation.differences import Difference, difference, of_bodies, snapshot_of
+from validation.methods import Method
 
 QUANTITIES = Difference._fields
 UNITS = {"position": "of the distance", "velocity": "of the speed", "attitude": "rad", "spin": "of the spin"}
@@ -48,6 +49,7 @@ class Arc(NamedTuple):
     counts: Sequence[int]
     tolerances: Tolerances
     longer: dict[Effort, Longer]
+    fast_primary: bool = False  # which spins about a principal axis, so that the law of its lead applies
 
     @property
     def steps(self) -> np.ndarray:
@@ -76,14 +78,14 @@ def truth(arc: Arc) -> tuple[Snapshot, list[Check]]:
     printed = equations.at(arc.end)
     rounded = difference(equations.at(arc.end, precise=False), printed).largest
     agreement = Check(
-        "the oracles: (55)-(62) - Lagrangian (15), all quantities",
+        "the oracles: (55)-(62) minus Lagrangian (15), all quantities",
         difference(printed, exact).largest,
         arc.tolerances.oracles,
         "quadruple precision, 1e-34, times the growth of a perturbation along the arc",
         roundoff=True,
     )
     right_hand_side = Check(
-        "the right-hand side of (55)-(62) at the start, ours - heyoka's, in units of order one",
+        "the right-hand side of (55)-(62) at the start, ours minus heyoka's, in units of order one",
         equations.right_hand_side_error(arc.system, arc.state),
         2e-15,
         "rounding",
@@ -94,7 +96,7 @@ def truth(arc: Arc) -> tuple[Snapshot, list[Check]]:
 
 def own_rounding(arc: Arc, numbers: str, error: float) -> Check:
     """Return the check of heyoka in double precision against itself."""
-    what = f"heyoka's {numbers} in double - in quadruple precision, all quantities"
+    what = f"heyoka's {numbers} in double minus in quadruple precision, all quantities"
     why = "rounding of heyoka's own: the truth here is taken in quadruple precision"
     return Check(what, error, arc.tolerances.rounding, why, roundoff=True)
 
@@ -104,17 +106,17 @@ def convergence(arc: Arc, method: Method, exact: Snapshot) -> list[Difference[np
     return [of_bodies(method.end(arc.system, arc.state, arc.end, count), exact) for count in arc.counts]
 
 
-def turning(arc: Arc, quantity: str) -> np.ndarray:
+def having(arc: Arc, quantity: str) -> np.ndarray:
     """Return which bodies have a quantity: a point has no attitude and no spin."""
     return arc.rigid if quantity in ("attitude", "spin") else np.full_like(arc.rigid, True)
 
 
-def orders(arc: Arc, errors: Sequence[Difference[np.ndarray]], tested: Method) -> Check:
+def orders(arc: Arc, errors: Sequence[Difference[np.ndarray]], tested: Method, *, headline: bool) -> Check:
     """Return the check of the order in every quantity of every body."""
     slopes = [
         methods.slope(arc.steps, of_body)
         for quantity, values in zip(QUANTITIES, zip(*errors, strict=True), strict=True)
-        for of_body in np.array(values).T[turning(arc, quantity)]
+        for of_body in np.array(values).T[having(arc, quantity)]
     ]
     worst = max(slopes, key=lambda slope: abs(slope - tested.order))
     return Check(
@@ -123,19 +125,22 @@ def orders(arc: Arc, errors: Sequence[Difference[np.ndarray]], tested: Method) -
         arc.tolerances.order,
         "the next even power of the step",
         shown=f"{min(slopes):.4f} to {max(slopes):.4f}",
-        headline=tested is methods.INERTIAL,
+        headline=headline,
     )
 
 
-def attitude_law(arc: Arc, errors: Sequence[Difference[np.ndarray]]) -> Check:
-    """Return the check of the primary's attitude against Omega t (h Omega)^2/6."""
-    measured, law = errors[-1].attitude[0], lead(arc, arc.steps[-1])
+def attitude_law(arc: Arc, exact: Snapshot) -> Check:
+    """Return the check of the primary's attitude, ahead about its spin, against Omega t (h Omega)^2/6."""
+    end = methods.INERTIAL.end(arc.system, arc.state, arc.end, arc.counts[-1])
+    turned = Rotation.from_matrix(exact.R[0].T @ end.R[0]).as_rotvec()
+    measured = turned @ exact.Omega[0] / np.linalg.norm(exact.Omega[0])
+    law = lead(arc, arc.steps[-1])
     return Check(
-        "attitude of the primary ahead over the law Omega t (h Omega)²/6, less 1",
+        "attitude of the primary ahead over the law Omega t (h Omega)²/6, minus 1",
         abs(measured / law - 1),
         1e-4,
         "what gravity does to the spin; the law's own next term, (h Omega)²",
-        shown=f"{measured:.6g} rad",
+        shown=f"{measured:+.6g} rad",
     )
 
 
@@ -145,15 +150,15 @@ def lead(arc: Arc, step: float) -> float:
     return rate * arc.end * (step * rate) ** 2 / 6
 
 
-def draw(name: str, arc: Arc, errors: Sequence[Difference[np.ndarray]], *, law: bool) -> Picture:
+def draw(name: str, arc: Arc, errors: Sequence[Difference[np.ndarray]]) -> Picture:
     """Return the errors of the production map against the step: position, attitude, spin of each body."""
     figure, panels = drawing.axes(3, xlabel="step [s]")
     for ax, quantity in zip(panels, ("position", "attitude", "spin"), strict=True):
         values = np.array([getattr(error, quantity) for error in errors])
-        for i in np.flatnonzero(turning(arc, quantity)):
+        for i in np.flatnonzero(having(arc, quantity)):
             drawing.curve(ax, arc.steps, values[:, i], arc.system.names[i], i)
         drawing.slope_line(ax, arc.steps, (arc.steps[0], values[0].max() * 2), 2)
-        if quantity == "attitude" and law:
+        if quantity == "attitude" and arc.fast_primary:
             of_law = [lead(arc, step) for step in arc.steps]
             ax.plot(arc.steps, of_law, ":", color="k", label="Omega t (h Omega)²/6")
         ax.set(title=f"{quantity} [{UNITS[quantity]}]", ylabel="error" if quantity == "position" else "")
@@ -162,7 +167,11 @@ def draw(name: str, arc: Arc, errors: Sequence[Difference[np.ndarray]], *, law: 
     caption = (
         f"Error of the variational map after {arc.end:g} s against the step, for each body: all fall with the square "
         "of the step, along the dashed line"
-        + ("; the attitude of the fast primary lies on the law of the discrete spin, dotted." if law else ".")
+        + (
+            "; the attitude of the fast primary lies on the law of the discrete spin, dotted."
+            if arc.fast_primary
+            else "."
+        )
     )
     return Picture(name, figure, caption)
 
@@ -176,7 +185,7 @@ def run(name: str, arc: Callable[[], Arc], effort: Effort) -> Findings:
     of_production: list[Difference[np.ndarray]] = []
     for method in tested:
         errors = convergence(arc, method, exact)
-        checks.append(orders(arc, errors, method))
+        checks.append(orders(arc, errors, method, headline=name == "heyoka-tumbling" and method is methods.RELATIVE))
         of_production = errors if method is methods.INERTIAL else of_production
     for method in tested[:2] if pair else tested[:1]:
         end = methods.limit(method, arc.system, arc.state, arc.end, arc.counts)
@@ -184,14 +193,14 @@ def run(name: str, arc: Callable[[], Arc], effort: Effort) -> Findings:
         what = f"{method.name}: limit of the step to zero, all quantities"
         error = difference(end, exact).largest
         checks.append(Check(what, error, arc.tolerances.limit, why, headline=method is methods.INERTIAL, roundoff=True))
-    if law := name == "heyoka-ellipsoids":
-        checks.append(attitude_law(arc, of_production))
+    if arc.fast_primary:
+        checks.append(attitude_law(arc, exact))
     if effort >= Effort.WHOLE:
         checks.append(runge_kutta(arc, exact))
     for needed, longer in arc.longer.items():
         if effort >= needed:
             checks += of_longer(arc, longer)
-    return Findings(checks, [draw(name, arc, of_production, law=law)])
+    return Findings(checks, [draw(name, arc, of_production)])
 
 
 def runge_kutta(arc: Arc, exact: Snapshot) -> Check:
@@ -235,15 +244,17 @@ def ellipsoids() -> Arc:
     system, state = ba.catalogue.load("didymos")
     longer = {
         Effort.WHOLE: Longer(30 * 86400.0, 120_000, 8e-13),
-        Effort.LONG: Longer(365.25 * 86400.0, 3_000_000, 1e-11),
+        Effort.LONG: Longer(365.25 * 86400.0, 3_000_000, 4e-10),
     }
-    return Arc(system, state, 12 * 3600.0, COUNTS, Tolerances(3e-31, 6e-14, 2e-14, 1e-2, 3e-12), longer)
+    return Arc(
+        system, state, 12 * 3600.0, COUNTS, Tolerances(3e-31, 6e-14, 2e-14, 1e-2, 3e-12), longer, fast_primary=True
+    )
 
 
 def tumbling() -> Arc:
     """Return two triaxial bodies in full tumble, for ten hours."""
     longer = {Effort.WHOLE: Longer(100 * 3600.0, 36_000, 2e-13)}
-    return Arc(*systems.tumbling_pair(), 10 * 3600.0, COUNTS, Tolerances(8e-32, 6e-14, 2e-14, 1e-3, 3e-12), longer)
+    return Arc(*systems.tumbling_pair(), 10 * 3600.0, COUNTS, Tolerances(8e-32, 6e-14, 1.5e-14, 1e-3, 3e-12), longer)
 
 
 def several() -> Arc:

@@ -15,7 +15,7 @@ AXES = np.array([85.0, 73.0, 63.0])  # m
 SPHERE, ELLIPSOID = 5.4e11, 3.93e9  # kg
 SHARE = np.sqrt(SPHERE / (SPHERE + ELLIPSOID))
 SEPARATION = 1195.0  # m
-PUBLISHED = (1.00179277, 0.66660891)  # of n: the two frequencies
+KNOWN = (1.00179277, 0.66660891)  # of n: the two frequencies
 UNCOUPLED = 0.67311417  # of n: sqrt(3 (B - A)/C)
 NAMES = ("distance", "face")
 AMPLITUDES = (1e-4, 5e-5)  # of the face [rad], and of the radial velocity over n r; extrapolated to zero
@@ -82,19 +82,23 @@ def limit(separation: float, frame: str = "relative") -> np.ndarray:
 
 
 def digits() -> list[Check]:
-    """Return the checks of the published digits."""
+    """Return the checks of the known digits."""
     found = (*limit(SEPARATION), closed_form(SEPARATION).uncoupled())
-    names = (*(f"frequency of the {name} at 1195 m, measured" for name in NAMES), "sqrt(3 (B - A)/C)")
+    names = (
+        *(f"frequency of the {name} at 1195 m, measured" for name in NAMES),
+        "the oracle itself: sqrt(3 (B - A)/C)",
+    )
     return [
         Check(
-            f"{name}: the published {published:.8f} n",
-            value - published,
+            f"{name}, known as {known:.8f} n",
+            value - known,
             5e-9,
-            "the last of the published digits is rounded",
+            "half of the last known digit",
             shown=f"{value:.11f} n",
             headline="measured" in name,
+            printed=True,
         )
-        for name, value, published in zip(names, found, (*PUBLISHED, UNCOUPLED), strict=True)
+        for name, value, known in zip(names, found, (*KNOWN, UNCOUPLED), strict=True)
     ]
 
 

@@ -73,7 +73,7 @@ def of_maps() -> list[Check]:
     counts = [STEPS * 2**k for k in range(HALVINGS)]
     checks = [
         Check(
-            f"the oracle itself: {name} - Kepler's equation in extended precision, {ORBITS} orbits",
+            f"the oracle itself: {name} minus Kepler's equation {nbody.IN_EXTENDED}, {ORBITS} orbits",
             difference(end, kepler).largest,
             tolerance,
             "rounding, 2e-15 to 6e-15 of the 628 rad",
@@ -92,7 +92,7 @@ def of_maps() -> list[Check]:
         furthest = max(slopes, key=lambda slope: abs(slope - 2))
         checks += [
             Check(
-                f"{method.name}: limit of the step to zero - IAS15, {ORBITS} orbits",
+                f"{method.name}: limit of the step to zero minus IAS15, {ORBITS} orbits",
                 difference(methods.limit(method, system, state, TIME, counts), ias15).largest,
                 8e-12,
                 "rounding, 3e-15 of the 628 rad, IAS15's as well",
@@ -100,7 +100,7 @@ def of_maps() -> list[Check]:
                 roundoff=True,
             ),
             Check(
-                f"{method.name}: - REBOUND leapfrog, conjugate by half a step, {STEPS} steps",
+                f"{method.name} minus REBOUND leapfrog, conjugate by half a step, {STEPS} steps",
                 difference(method.end(system, state, TIME, STEPS), leapfrog).largest,
                 4e-11,
                 "rounding of the leapfrog, whose sums are not compensated",
@@ -124,14 +124,20 @@ def of_faces() -> list[Check]:
     order = methods.slope([1 / n for n in off], [abs(ratio) for ratio in ratios.values()])
     return [
         Check(
-            f"both faces after {ORBITS} orbits of 400 steps: ahead of the line of centres, over the law, - 1",
+            f"both faces after {ORBITS} orbits of 400 steps: ahead of the line of centres, over the law, minus 1",
             ratios[400],
             1e-4,
             "the next power of the step, (h n)^2 = 2.5e-4 times a number: the next row",
             shown=f"{off[400][0]:.6f} rad",
             headline=True,
         ),
-        Check("order in the step of that difference", order - 2, 2e-2, "the power after", shown=f"{order:.4f}"),
+        Check(
+            "order in the step of that difference",
+            order - 2,
+            2e-2,
+            "the power of the step after the next",
+            shown=f"{order:.4f}",
+        ),
     ]
 
 

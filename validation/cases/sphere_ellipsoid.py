@@ -13,7 +13,7 @@ from validation.truncation import MODELS, Pair
 
 AXES = np.array([1.0, 0.7, 0.5])  # m
 PLACE = np.array([2.1, 0.7, -0.9])  # m, in the ellipsoid's frame
-VALUE = -0.42441825577631737  # there, as published, for G M m = 1
+VALUE = -0.42441825577631737  # there, by an independent implementation, for G M m = 1
 ATTITUDE = Rotation.from_euler("zxz", [0.4, 0.7, -1.1]).as_matrix()
 PAIR = Pair(
     "sphere-ellipsoid",
@@ -39,7 +39,7 @@ def run(effort: Effort) -> Findings:
     closed = PAIR.exact(place)
     checks = [
         Check(
-            "U at (2.1, 0.7, -0.9), a = (1, 0.7, 0.5), by Carlson's integrals: the published digits",
+            "the oracle itself: U at (2.1, 0.7, -0.9), a = (1, 0.7, 0.5), by Carlson's integrals, as it is known",
             closed.energy / VALUE - 1,
             1.5e-15,
             "rounding of the oracle",

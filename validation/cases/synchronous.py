@@ -128,7 +128,7 @@ def end_checks(method: Method, tolerance: float) -> list[Check]:
             f"{method.name}: after {TURNS} turns, step -> 0: position, velocity, attitude, spin",
             difference(limit, exact(time)).largest,
             tolerance,
-            "rounding",
+            "rounding; as printed, of products of matrices, which leave SO(3)",
             headline=method is methods.RELATIVE,
             roundoff=True,
         ),
@@ -157,13 +157,13 @@ def run(effort: Effort) -> Findings:
 def picture() -> Picture:
     """Draw how far runs are off the equilibrium, in time and against the step."""
     figure, (left, right) = drawing.axes(2)
-    left.set(xlabel="turns", ylabel="off the equilibrium [1e-4, 1e-4 rad]", title=f"{PER_TURN[2]} steps a turn")
+    left.set(xlabel="turns", ylabel="off the equilibrium [1e-4 of r, 1e-4 rad]", title=f"{PER_TURN[2]} steps a turn")
     turns, off = wandering("relative", PER_TURN[2])
     for k, name in enumerate(NAMES):
         left.plot(turns, off[:, k] * 1e4, color=drawing.COLOURS[k], lw=1, label=name)
     left.margins(y=0.15)
     drawing.legend(left, ncols=3, loc="upper center")
-    right.set(xlabel="n h [rad]", ylabel="furthest from it [-, rad]")
+    right.set(xlabel="n h [rad]", ylabel="furthest from it [of r, rad]")
     angles = 2 * np.pi / np.array(PER_TURN)
     for k, name in enumerate(NAMES):
         found = [np.abs(wandering("relative", count)[1][:, k]).max() for count in PER_TURN]

@@ -109,7 +109,7 @@ def of_limits(setting: Setting) -> list[Check]:
     )
     return [
         Check(
-            f"{setting.name}: limit of the step to zero - IAS15",
+            f"{setting.name}: limit of the step to zero minus IAS15",
             difference(limit, nbody.ias15(system, state, setting.time)).largest,
             setting.to_ias15,
             "rounding of IAS15: limits from other steps agree to 4e-14",
@@ -117,7 +117,7 @@ def of_limits(setting: Setting) -> list[Check]:
             roundoff=True,
         ),
         Check(
-            f"{setting.name}: limit of the step to zero - that of REBOUND WHFast",
+            f"{setting.name}: limit of the step to zero minus that of REBOUND WHFast",
             difference(limit, of_whfast).largest,
             setting.to_whfast,
             "rounding of WHFast: it changes with its steps",
@@ -134,7 +134,7 @@ def of_maps(setting: Setting) -> list[Check]:
     extended = nbody.kick_drift_kick_extended(system, state, setting.time, SAME_STEPS)
     return [
         Check(
-            f"{setting.name}, {SAME_STEPS} steps: LGVI - REBOUND leapfrog, conjugate by half a step",
+            f"{setting.name}, {SAME_STEPS} steps: LGVI minus REBOUND leapfrog, conjugate by half a step",
             difference(end, leapfrog).largest,
             setting.to_leapfrog,
             "rounding of the leapfrog, whose sums are not compensated: see the next row",
@@ -142,7 +142,7 @@ def of_maps(setting: Setting) -> list[Check]:
             roundoff=True,
         ),
         Check(
-            f"{setting.name}, {SAME_STEPS} steps: LGVI - the same map in extended precision",
+            f"{setting.name}, {SAME_STEPS} steps: LGVI minus the same map {nbody.IN_EXTENDED}",
             difference(end, extended).largest,
             setting.to_extended,
             "rounding of LGVI" + (", most in the attitude of Alpha, 440 rad" if "spheres" in setting.name else ""),
@@ -185,7 +185,7 @@ def draw(ax: Axes, setting: Setting) -> None:
         ).position
         for n in counts
     ]
-    drawing.curve(ax, h, apart, "LGVI - conjugate leapfrog", 4)
+    drawing.curve(ax, h, apart, "LGVI minus conjugate leapfrog", 4)
     ax.set(title=setting.name, ylim=(1e-19, 10))
     ax.title.set_fontsize(9)
 

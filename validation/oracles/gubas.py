@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 import binaryast as ba
 from binaryast.equations.legendre import Snapshot
 from binaryast.gravity import Gravity
+from validation.differences import snapshot_of
 
 FOLDER = Path(__file__).parents[1] / "references"
 KM, MEGAJOULE = 1000.0, 1e6
@@ -76,8 +77,6 @@ class Rows(NamedTuple):
 
     def snapshot(self, k: int) -> Snapshot:
         """Return the k-th row as inertial arrays, the barycentre at rest."""
-        from validation.methods import snapshot_of
-
         return snapshot_of(self.relative(k).to_state(system(ba.PointMass())))
 
 

@@ -88,7 +88,8 @@ class LagrangianMotion:
             if isinstance(pair.gravity, ba.SecondDegree):
                 total += mutual_potentials.second_moments(gm[one], m[one], m[two], Jd[one], Jd[two], x, R1, R2)
                 continue
-            sets = [mutual_potentials.points_of(self.system.bodies[i], self.units) for i in (one, two)]
+            bodies = [self.system.bodies[i] for i in (one, two)]
+            sets = [mutual_potentials.points_of(body, pair.gravity, self.units) for body in bodies]
 
             def d(rho1: Array, rho2: Array, x: Array = x, R1: Array = R1, R2: Array = R2) -> Array:
                 return x + R1 @ rho1 - R2 @ rho2

@@ -6,13 +6,16 @@ import heyoka as hy
 import numpy as np
 
 import binaryast as ba
+from binaryast.gravity import Gravity
 from validation.oracles.taylor import REAL, Array, Units, numbers
 
 
-def points_of(body: ba.RigidBody, units: Units) -> list[tuple[Array, Any]]:
-    """Return the points (position in the body frame, share of the mass) that attract as a dumbbell does, or a point."""
-    if not isinstance(body.shape, ba.Dumbbell):
+def points_of(body: ba.RigidBody, gravity: Gravity, units: Units) -> list[tuple[Array, Any]]:
+    """Return the points (position in the body frame, share of the mass) that a body attracts with."""
+    if isinstance(gravity, ba.PointMass) or isinstance(body.shape, (ba.Sphere, ba.Point)):
         return [(numbers(np.zeros(3).astype(REAL)), numbers(np.ones(1).astype(REAL))[0])]
+    if not isinstance(gravity, ba.PointPairs) or not isinstance(body.shape, ba.Dumbbell):
+        raise ValueError(f"expected a dumbbell, a sphere or a point and their points, got {body.shape}, {gravity}")
     half = body.shape.length.value / 2 / units.length
     return [(numbers(np.array([x, 0.0, 0.0]).astype(REAL)), hy.expression(REAL(0.5))) for x in (half, -half)]
 

@@ -13,7 +13,7 @@ import numpy as np
 import binaryast as ba
 from binaryast.equations.legendre import Snapshot
 
-REAL = hy.real128
+REAL = getattr(hy, "real128", np.longdouble)  # where a long double has 128 bits, heyoka takes that
 TOLERANCE, PRECISE_TOLERANCE = 1e-16, 1e-32
 Array = np.ndarray  # of floats, of quadruple precision, or of heyoka's expressions
 
@@ -95,6 +95,8 @@ def gradient(function: Any, *arrays: Array) -> list[Array]:
 
 def integrate(equations: Sequence[tuple[Any, Any]], y: Array, end: Any, *, precise: bool) -> Array:
     """Return the state at a time: the same equations from the same start, in quadruple or in double precision."""
+    if np.finfo(np.longdouble).eps > 1e-30 and not hasattr(hy, "real128"):
+        raise RuntimeError("this heyoka has no quadruple precision: expected one with real128, as its Linux wheels are")
     kind = REAL if precise else float
     tolerance = kind(PRECISE_TOLERANCE if precise else TOLERANCE)
     integrator = hy.taylor_adaptive(
@@ -102,7 +104,7 @@ def integrate(equations: Sequence[tuple[Any, Any]], y: Array, end: Any, *, preci
     )
     outcome = integrator.propagate_until(kind(end))[0]
     if outcome != hy.taylor_outcome.time_limit:
-        raise RuntimeError(f"heyoka ended with {outcome}")
+        raise RuntimeError(f"heyoka: expected to reach t = {end}, got {outcome}: a shorter arc may help")
     return integrator.state.astype(REAL)
 
 
