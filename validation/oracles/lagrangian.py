@@ -86,7 +86,8 @@ class LagrangianMotion:
             two, one = pair.primary, pair.secondary
             x, R1, R2 = self.x[one] - self.x[two], self.R[one], self.R[two]
             if isinstance(pair.gravity, ba.SecondDegree):
-                total += mutual_potentials.second_moments(gm[one], m[one], m[two], Jd[one], Jd[two], x, R1, R2)
+                squares = [5.0 * Jd[i] / m[i] for i in (one, two)]
+                total += mutual_potentials.ellipsoids(gm[one], m[two], *squares, x, R1, R2, degree=2)
                 continue
             bodies = [self.system.bodies[i] for i in (one, two)]
             sets = [mutual_potentials.points_of(body, pair.gravity, self.units) for body in bodies]

@@ -1,5 +1,6 @@
 """Mutual potentials as heyoka's expressions, written down from their definitions; heyoka differentiates them."""
 
+from itertools import combinations_with_replacement
 from typing import Any
 
 import heyoka as hy
@@ -40,15 +41,40 @@ def maccullagh(gm1: Any, m1: Any, m2: Any, J1: Array, J2: Array, X: Array, R: Ar
     return -gm1 * m2 / r - G * m2 * one / (2.0 * r * r * r) - G * m1 * two / (2.0 * r * r * r)
 
 
-def second_moments(gm1: Any, m1: Any, m2: Any, Jd1: Array, Jd2: Array, x: Array, R1: Array, R2: Array) -> Any:
-    """Return the same in inertial axes, from Taylor's series of 1/|x + rho| to second degree.
+def ellipsoids(
+    gm1: Any, m2: Any, squares1: Array, squares2: Array, x: Array, R1: Array, R2: Array, *, degree: int
+) -> Any:
+    """Return U of two homogeneous ellipsoids in any axes, from Taylor's series of 1/|x + rho| to degree 2 or 4.
 
-    U = -G m1 m2/|x| - (G/2) (m2 R1 J_d1 R1^T + m1 R2 J_d2 R2^T) : grad grad (1/|x|), which heyoka differentiates.
+    With D = sum a_i^2 (R e_i . grad)^2 the mean of f(x + R rho) over an ellipsoid is f + D f/10 + D^2 f/280 + ..;
+    heyoka differentiates 1/|x|. Of second degree it holds for any body if a_i^2 is 5 J_d/m.
     """
-    G = gm1 / m1
+    tenth, small = (hy.expression(REAL(1.0) / REAL(n)) for n in (10.0, 280.0))  # not rounded to double
+    D1, D2 = R1 @ np.diag(squares1) @ R1.T, R2 @ np.diag(squares2) @ R2.T
+    total = 1.0 / norm(x) + tenth * contracted(derivatives(x, 2), D1 + D2)
+    if degree == 4:
+        fourth = derivatives(x, 4)
+        total += small * (contracted(fourth, D1, D1) + contracted(fourth, D2, D2))
+        total += tenth * tenth * contracted(fourth, D1, D2)
+    return -gm1 * m2 * total
+
+
+def derivatives(x: Array, order: int) -> Array:
+    """Return all derivatives of an order of 1/|x|, as an array with so many axes of 3."""
     y = np.array([hy.make_vars(f"place_{k}") for k in range(3)], dtype=object)
-    hessian = np.array([[hy.diff(hy.diff(1.0 / norm(y), a), b) for b in y] for a in y], dtype=object)
     place = dict(zip(map(str, y), x, strict=True))
-    second = np.array([[hy.subs(element, place) for element in row] for row in hessian], dtype=object)
-    moments = m2 * (R1 @ np.diag(Jd1) @ R1.T) + m1 * (R2 @ np.diag(Jd2) @ R2.T)
-    return -gm1 * m2 / norm(x) - 0.5 * G * (moments * second).sum()
+    known = {(): 1.0 / norm(y)}
+    for k in range(order):
+        for indices in combinations_with_replacement(range(3), k + 1):
+            known[indices] = hy.diff(known[indices[:-1]], y[indices[-1]])
+    result = np.empty((3,) * order, dtype=object)
+    for indices in np.ndindex(result.shape):
+        result[indices] = hy.subs(known[tuple(sorted(indices))], place)
+    return result
+
+
+def contracted(tensor: Array, *matrices: Array) -> Any:
+    """Return the sum of a tensor's elements times those of symmetric matrices, one for each two of its axes."""
+    for matrix in matrices:
+        tensor = (tensor * matrix).sum(axis=(-2, -1))
+    return tensor
