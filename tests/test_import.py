@@ -44,6 +44,11 @@ def test_every_public_name_is_documented_with_an_example() -> None:
         "propagate",
         "pair_potential",
         "PairPotential",
+        "Multipole",
+        "Union",
+        "Part",
+        "InertiaIntegrals",
+        "StokesCoefficients",
     ):
         assert ">>>" in getattr(ba, name).__doc__
     for function in (ba.equations.continuous, ba.equations.discrete, ba.State.from_orbits, ba.State.circular_orbit):
@@ -53,7 +58,16 @@ def test_every_public_name_is_documented_with_an_example() -> None:
 def test_values_pickle() -> None:
     system, state = ba.catalogue.load("dumbbells")
     scenario = ba.catalogue.entry("moshup")
-    for value in (system, state, scenario, system.gravity, ba.SecondDegree(), ba.PointMass(), scenario.integrator):
+    for value in (
+        system,
+        state,
+        scenario,
+        system.gravity,
+        ba.SecondDegree(),
+        ba.Multipole(4),
+        ba.PointMass(),
+        scenario.integrator,
+    ):
         again = pickle.loads(pickle.dumps(value))
         assert type(again) is type(value)
     for value in (ba.RungeKutta(rtol=1e-9), ba.Point(), ba.Orbit(1 * u.km), *ba.catalogue.load("sn263")):

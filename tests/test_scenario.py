@@ -156,7 +156,7 @@ def test_the_example_of_the_documentation_runs() -> None:
     assert binaryast.scenario.__doc__
     text = textwrap.dedent(binaryast.scenario.__doc__.partition("::\n")[2])
     scenario = loads(text, name="example", where="example.toml")
-    assert [type(pair.gravity).__name__ for pair in scenario.system.pairs] == [*2 * ["SecondDegree"], "PointMass"]
+    assert [type(pair.gravity).__name__ for pair in scenario.system.pairs] == [*2 * ["Multipole"], "PointMass"]
     run = ba.propagate(scenario.system, scenario.state, duration=1 * u.h, integrator=scenario.integrator)
     assert run.status == "completed"
 

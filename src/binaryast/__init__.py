@@ -11,8 +11,9 @@ from binaryast import constants as _constants
 if TYPE_CHECKING:
     from binaryast import analysis, catalogue, constants, equations, errors, plotting, scenario
     from binaryast.bodies import RigidBody
+    from binaryast.coefficients import InertiaIntegrals, StokesCoefficients
     from binaryast.errors import BinaryastError
-    from binaryast.gravity import PairPotential, PointMass, PointPairs, SecondDegree, pair_potential
+    from binaryast.gravity import Multipole, PairPotential, PointMass, PointPairs, SecondDegree, pair_potential
     from binaryast.integrators import LGVI, RungeKutta
     from binaryast.orbits import Orbit
     from binaryast.propagation import propagate
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from binaryast.state import RelativeState, State
     from binaryast.system import MutualGravity, System
     from binaryast.trajectory import Trajectory
+    from binaryast.unions import Part, Union
 
 __version__ = _constants.VERSION
 
@@ -27,10 +29,13 @@ _HOMES = {
     "BinaryastError": "errors",
     "Dumbbell": "shapes",
     "Ellipsoid": "shapes",
+    "InertiaIntegrals": "coefficients",
     "LGVI": "integrators",
+    "Multipole": "gravity",
     "MutualGravity": "system",
     "Orbit": "orbits",
     "PairPotential": "gravity",
+    "Part": "unions",
     "Point": "shapes",
     "PointCloud": "shapes",
     "PointMass": "gravity",
@@ -42,8 +47,10 @@ _HOMES = {
     "Shape": "shapes",
     "Sphere": "shapes",
     "State": "state",
+    "StokesCoefficients": "coefficients",
     "System": "system",
     "Trajectory": "trajectory",
+    "Union": "unions",
     "pair_potential": "gravity",
     "propagate": "propagation",
 }
@@ -54,9 +61,12 @@ __all__ = [
     "BinaryastError",
     "Dumbbell",
     "Ellipsoid",
+    "InertiaIntegrals",
+    "Multipole",
     "MutualGravity",
     "Orbit",
     "PairPotential",
+    "Part",
     "Point",
     "PointCloud",
     "PointMass",
@@ -68,8 +78,10 @@ __all__ = [
     "Shape",
     "Sphere",
     "State",
+    "StokesCoefficients",
     "System",
     "Trajectory",
+    "Union",
     "__version__",
     "analysis",
     "catalogue",

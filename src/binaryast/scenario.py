@@ -19,7 +19,8 @@ arguments. Only gravity by pairs and the orbits of several bodies have tables of
     mass = "12 kg"
 
     [gravity]                                     # of all pairs that are not named below
-    type = "SecondDegree"
+    type = "Multipole"
+    degree = 4
 
     [[gravity.pairs]]
     bodies = ["B", "craft"]
@@ -57,7 +58,7 @@ from typing import Any
 from astropy.time import Time
 from astropy.units import Quantity
 
-from binaryast import gravity, shapes
+from binaryast import coefficients, gravity, shapes, unions
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError, ScenarioError, StorageError, did_you_mean
 from binaryast.integrators import LGVI
@@ -69,12 +70,30 @@ from binaryast.units import brief, parse, quantity, to_si
 from binaryast.values import Value
 
 SHAPES = {
-    kind.__name__: kind for kind in (shapes.Ellipsoid, shapes.Sphere, shapes.Dumbbell, shapes.PointCloud, shapes.Point)
+    kind.__name__: kind
+    for kind in (
+        shapes.Ellipsoid,
+        shapes.Sphere,
+        shapes.Dumbbell,
+        shapes.PointCloud,
+        shapes.Point,
+        unions.Union,
+        coefficients.InertiaIntegrals,
+        coefficients.StokesCoefficients,
+    )
 }
-GRAVITIES = {kind.__name__: kind for kind in (gravity.SecondDegree, gravity.PointPairs, gravity.PointMass)}
+GRAVITIES = {
+    kind.__name__: kind for kind in (gravity.SecondDegree, gravity.Multipole, gravity.PointPairs, gravity.PointMass)
+}
 STATES = ("circular_orbit", "from_elements", "from_orbits", "inertial", "relative")
-PLAIN = ("weights", "eccentricity", "about", "R", "R2", "attitude", "epoch", "frame")  # arguments that have no unit
+PLAIN = (  # arguments that have no unit
+    *("weights", "table", "C", "S", "normalised", "condon_shortley", "turn", "degree"),
+    *("eccentricity", "about", "R", "R2", "attitude", "epoch", "frame"),
+)
 EXAMPLES = {  # what a text with a unit looks like
+    "mass": "2e9 kg",
+    "density": "2000 kg / m3",
+    "offset": "[60, 0, 0] m",
     "X": "[1, 0, 0] km",
     "velocity": "[[0, 0, 0], [0, 17, 0]] cm / s",
     "position": "[[0, 0, 0], [1, 0, 0]] km",
@@ -276,6 +295,10 @@ def _argument(value: Any, key: str, where: str) -> Any:
     """Return an argument of a constructor: a quantity from its text, lists of them, and what is in `PLAIN` as it is."""
     if key in PLAIN:
         return value
+    if key == "shape":
+        return _typed(_table({key: value}, key, where.removesuffix(key)), SHAPES, where)
+    if key == "parts":
+        return _parts(value, where)
     example = EXAMPLES.get(key, "1 m")
     if isinstance(value, list) and (key == "spins" or any(isinstance(item, str) for item in value)):
         return [_argument(item, key, f"{where}[{i}]") for i, item in enumerate(value)]
@@ -286,6 +309,13 @@ def _argument(value: Any, key: str, where: str) -> Any:
     if value == "synchronous" or (value == "none" and where.startswith("state.spins")):
         return value
     return parse(_text(value, where, example.lstrip("[0123456789., ]")), where, example)
+
+
+def _parts(value: Any, where: str) -> list[unions.Part]:
+    """Return the parts of a union."""
+    if not isinstance(value, list) or not all(isinstance(part, dict) for part in value):
+        raise InputError(f"{where}: expected a list of tables, each with a shape and a mass, got {brief(value)}")
+    return [_call(unions.Part, {}, part, f"{where}[{i}]") for i, part in enumerate(value)]
 
 
 def _time(value: Any, where: str) -> Quantity:

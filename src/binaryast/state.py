@@ -11,7 +11,8 @@ from astropy.units import Quantity
 from binaryast import orbits
 from binaryast.errors import InputError
 from binaryast.orbits import ZERO, Orbit, from_orbits, is_celestial
-from binaryast.system import System, rotation
+from binaryast.rotations import rotation
+from binaryast.system import System
 from binaryast.units import Floats, as_quantity, brief, quantity, to_si
 from binaryast.values import Value
 
