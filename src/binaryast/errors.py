@@ -44,6 +44,10 @@ class StepWarning(BinaryastWarning):
     """A step that works but is doubtful."""
 
 
+class GravityWarning(BinaryastWarning):
+    """A gravity that is cut at a low degree for bodies so near to each other."""
+
+
 class EndWarning(BinaryastWarning):
     """A run that ended before its time."""
 
