@@ -232,21 +232,17 @@ class RigidBody(Value):
 
         A point p is on the surface where (p - centre) . matrix^-1 (p - centre) = 1.
         """
-        return [
-            ((centre - self.shape.centre) @ self.turn, self.turn.T @ matrix @ self.turn)
-            for centre, matrix in self.shape.pieces
-        ]
+        surface: list[tuple[Floats, Floats]] = []
+        for centre, axes in self.shape.pieces:
+            columns = self.turn.T @ (axes if axes.ndim == 2 else np.diag(axes))
+            surface.append(((centre - self.shape.centre) @ self.turn, columns @ columns.T))
+        return surface
 
     @property
     def bounding_radius(self) -> float:
         """Radius of a sphere about the mass centre that holds the surface [m]; 0 without a surface."""
-        return max(
-            (
-                float(np.linalg.norm(centre - self.shape.centre) + np.sqrt(np.linalg.eigvalsh(matrix)[-1]))
-                for centre, matrix in self.shape.pieces
-            ),
-            default=0.0,
-        )
+        reach = [np.linalg.norm(c) + np.sqrt(max(np.linalg.eigvalsh(m)[-1], 0.0)) for c, m in self.surface]
+        return float(max(reach, default=0.0))
 
 
 def principal_axes(matrix: Floats, name: str) -> tuple[Floats, Floats]:

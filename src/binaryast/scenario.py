@@ -87,7 +87,7 @@ GRAVITIES = {
 }
 STATES = ("circular_orbit", "from_elements", "from_orbits", "inertial", "relative")
 PLAIN = (  # arguments that have no unit
-    *("weights", "table", "C", "S", "normalised", "condon_shortley", "turn", "degree"),
+    *("weights", "parts", "table", "C", "S", "normalised", "condon_shortley", "turn", "degree"),
     *("eccentricity", "about", "R", "R2", "attitude", "epoch", "frame"),
 )
 EXAMPLES = {  # what a text with a unit looks like
@@ -216,9 +216,29 @@ def _body(table: dict[str, Any], where: str) -> RigidBody:
     _needed(table, ("name", "shape"), f"{where}.")
     units = {"mass": "kg", "density": "kg / m3", "gm": "m3 / s2", "inertia": "kg m2"}
     given = {key: _text(table[key], f"{where}.{key}", unit) for key, unit in units.items() if key in table}
-    shape = _typed(_table(table, "shape", f"{where}."), SHAPES, f"{where}.shape")
+    shape = _shape(_table(table, "shape", f"{where}."), f"{where}.shape")
     quantities = {key: parse(text, f"{where}.{key}", f"1 {units[key]}") for key, text in given.items()}
     return RigidBody(table["name"], shape, **quantities)
+
+
+def _shape(table: dict[str, Any], where: str) -> Any:
+    """Return a shape, with the shapes inside it."""
+    if table.get("type") == "Union" and "parts" in table:
+        table = table | {"parts": _parts(table["parts"], f"{where}.parts")}
+    return _typed(table, SHAPES, where)
+
+
+def _parts(tables: Any, where: str) -> list[unions.Part]:
+    """Return the parts of a union."""
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise InputError(f"{where}: expected tables, each with a shape and a mass, got {brief(tables)}")
+    parts = []
+    for i, table in enumerate(tables):
+        _needed(table, ("shape",), f"{where}[{i}].")
+        shape = _shape(_table(table, "shape", f"{where}[{i}]."), f"{where}[{i}].shape")
+        others = {key: value for key, value in table.items() if key != "shape"}
+        parts.append(_call(unions.Part, {"shape": shape}, others, f"{where}[{i}]"))
+    return parts
 
 
 def _gravity(table: dict[str, Any]) -> Any:
@@ -295,10 +315,6 @@ def _argument(value: Any, key: str, where: str) -> Any:
     """Return an argument of a constructor: a quantity from its text, lists of them, and what is in `PLAIN` as it is."""
     if key in PLAIN:
         return value
-    if key == "shape":
-        return _typed(_table({key: value}, key, where.removesuffix(key)), SHAPES, where)
-    if key == "parts":
-        return _parts(value, where)
     example = EXAMPLES.get(key, "1 m")
     if isinstance(value, list) and (key == "spins" or any(isinstance(item, str) for item in value)):
         return [_argument(item, key, f"{where}[{i}]") for i, item in enumerate(value)]
@@ -309,13 +325,6 @@ def _argument(value: Any, key: str, where: str) -> Any:
     if value == "synchronous" or (value == "none" and where.startswith("state.spins")):
         return value
     return parse(_text(value, where, example.lstrip("[0123456789., ]")), where, example)
-
-
-def _parts(value: Any, where: str) -> list[unions.Part]:
-    """Return the parts of a union."""
-    if not isinstance(value, list) or not all(isinstance(part, dict) for part in value):
-        raise InputError(f"{where}: expected a list of tables, each with a shape and a mass, got {brief(value)}")
-    return [_call(unions.Part, {}, part, f"{where}[{i}]") for i, part in enumerate(value)]
 
 
 def _time(value: Any, where: str) -> Quantity:

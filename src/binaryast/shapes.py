@@ -33,8 +33,8 @@ class Shape(Value, ABC):
     points : tuple of ndarray or None
         Positions (k, 3) [m] and fractions of the mass (k,) of point masses with the same gravity, where there are some.
     pieces : list of tuple of ndarray
-        The surface as ellipsoids: centre (3,) [m] and matrix (3, 3) [m2] of each, for axes along those of the shape
-        the squares of the semi-axes on its diagonal; empty for what never touches.
+        The surface as ellipsoids: centre (3,) and semi-axes [m] of each, along the axes of the shape's frame (3,) or as
+        the columns of a matrix (3, 3); empty for what never touches.
     """
 
     volume: float | None = None
@@ -115,7 +115,7 @@ class Ellipsoid(Shape):
     @property
     def pieces(self) -> list[tuple[Floats, Floats]]:
         """The surface as ellipsoids."""
-        return [(self.centre, np.diag(self._axes**2))]
+        return [(self.centre, self._axes)]
 
     def moments(self, degree: int, origin: Floats, turn: Floats) -> Floats:
         """Return the specific moments in another frame, see `Shape.moments`: Dirichlet's integral."""
@@ -158,7 +158,7 @@ class Sphere(Shape):
     @property
     def pieces(self) -> list[tuple[Floats, Floats]]:
         """The surface as ellipsoids."""
-        return [(self.centre, np.eye(3) * self.radius.value**2)]
+        return [(self.centre, np.full(3, self.radius.value))]
 
     def moments(self, degree: int, origin: Floats, turn: Floats) -> Floats:
         """Return the specific moments in another frame, see `Shape.moments`."""
@@ -187,7 +187,7 @@ class Point(Shape):
     @property
     def pieces(self) -> list[tuple[Floats, Floats]]:
         """The surface as ellipsoids: one without size."""
-        return [(self.centre, np.zeros((3, 3)))]
+        return [(self.centre, np.zeros(3))]
 
     def moments(self, degree: int, origin: Floats, turn: Floats) -> Floats:
         """Return the specific moments in another frame, see `Shape.moments`."""
@@ -245,7 +245,7 @@ class Dumbbell(Shape):
     def pieces(self) -> list[tuple[Floats, Floats]]:
         """The surface as ellipsoids."""
         half = self.length.value / 2
-        return [(np.array([x, 0.0, 0.0]), np.eye(3) * self.radius.value**2) for x in (half, -half)]
+        return [(np.array([x, 0.0, 0.0]), np.full(3, self.radius.value)) for x in (half, -half)]
 
     def moments(self, degree: int, origin: Floats, turn: Floats) -> Floats:
         """Return the specific moments in another frame, see `Shape.moments`."""

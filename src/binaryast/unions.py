@@ -148,7 +148,7 @@ class Union(Shape):
     def pieces(self) -> list[tuple[Floats, Floats]]:
         """The surface as ellipsoids: that of every part."""
         return [
-            (part.si.offset + part.si.turn @ centre, part.si.turn @ matrix @ part.si.turn.T)
+            (part.si.offset + part.si.turn @ centre, part.si.turn @ (axes if axes.ndim == 2 else np.diag(axes)))
             for part in self.parts
-            for centre, matrix in part.shape.pieces
+            for centre, axes in part.shape.pieces
         ]
