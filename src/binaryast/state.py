@@ -137,7 +137,7 @@ class State(Value):
         >>> system, _ = ba.catalogue.load("didymos")
         >>> start = ba.State.circular_orbit(system, period=11.921473 * u.h, spins=[2.26 * u.h, "synchronous"])
         >>> print(start.separation.round(1))
-        1183.9 m
+        1184.2 m
         """
         _check_system(system, "circular_orbit")
         motion = orbits.circular_orbit(system, separation, period, pole, spins)
