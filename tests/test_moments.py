@@ -121,6 +121,9 @@ def test_a_union() -> None:
     assert ba.RigidBody("U", union, mass=18 * u.kg).inertia[0] == 2 * ba.RigidBody("U", union).inertia[0]
     body = ba.RigidBody("U", SHAPES["union"])
     assert len(body.surface) == 3
+    centre, matrix = body.surface[2]
+    np.testing.assert_allclose(body.offset.value + body.turn @ centre, [0, -70, 20], atol=1e-12)
+    np.testing.assert_allclose(body.turn @ matrix @ body.turn.T, TURN @ np.diag([900, 225, 100]) @ TURN.T, atol=1e-10)
     assert body.density is None
     ball = ba.Part(ba.Sphere(3 * u.m), density=ROCK, offset=[10, 0, 0] * u.m)
     hollow = ba.Part(ba.Sphere(1 * u.m), density=-ROCK, offset=[10, 0, 0] * u.m)

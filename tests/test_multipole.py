@@ -221,4 +221,8 @@ def test_the_next_terms_are_what_the_next_two_degrees_add() -> None:
         (size,) = ba.Multipole(degree).next_terms(SECONDARY, PRIMARY, X[None], R[None])
         both = np.abs(terms(X, R, degree + 2)[-2:]).sum() * np.linalg.norm(X)
         assert size == pytest.approx(both, rel=1e-12)
+    (size,) = ba.Multipole(2).next_terms(SECONDARY, PRIMARY, np.array([[0, 0, 4.0]]), R[None])
+    assert size == pytest.approx(4 * np.abs(terms(np.array([0, 0, 4.0]), R, 4)[-2:]).sum(), rel=1e-12)
     assert ba.PointPairs().next_terms(SECONDARY, PRIMARY, X[None], R[None]) is None
+    large = [ba.RigidBody(n, ba.Ellipsoid(1e80 * u.m, 2e80 * u.m, 2e80 * u.m), mass=1e30 * u.kg) for n in "AB"]
+    assert ba.Multipole(2).next_terms(*large, X[None], R[None]) is None

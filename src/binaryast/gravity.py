@@ -61,7 +61,7 @@ class Gravity(Value, ABC):
         Returns
         -------
         ndarray or None
-            (N,); None of a model that is not cut at a degree, or where the moments are not known so far.
+            (N,); None of a model that is not cut at a degree, or where the moments are not known so far or not finite.
         """
         if self.cut_at is None:
             return None
@@ -69,8 +69,9 @@ class Gravity(Value, ABC):
             parameters = _multipole_parameters(secondary, primary, self.cut_at + 2)
         except InputError:
             return None
-        with np.errstate(over="ignore", invalid="ignore"):
-            return term_sizes(parameters, self.cut_at + 2, x, r)
+        with np.errstate(all="ignore"):
+            sizes = term_sizes(parameters, self.cut_at + 2, x, r)
+        return sizes if np.all(np.isfinite(sizes)) else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +132,9 @@ class SecondDegree(Gravity):
 class Multipole(Gravity):
     """The mass moments of both bodies up to a total degree N: what remains falls off as (size/r)^(N + 1).
 
-    All terms are taken whose degrees in the two bodies add up to N or less. Degree 2 is that of `SecondDegree`.
+    All terms are taken whose degrees in the two bodies add up to N or less. Degree 2 is that of `SecondDegree`. The sum
+    converges where spheres about the mass centres that hold the bodies do not meet; nearer it may, and a run says how
+    large its next terms are (`Trajectory.max_next_degree_term`).
 
     Parameters
     ----------

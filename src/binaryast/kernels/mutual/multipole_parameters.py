@@ -4,7 +4,10 @@ The parameters are G m1 m2, then for each degree l from 2 and order m from 0 to 
 body 1 (the secondary) and of body 2, then s of both; those of body 1 are times (-1)^l.
 """
 
+from functools import lru_cache
+
 import numpy as np
+from numpy.typing import NDArray
 
 from binaryast.kernels.harmonics import harmonic_moments, place
 from binaryast.kernels.moments import Floats
@@ -28,10 +31,15 @@ def parameters_of(monopole: float, secondary: Floats, primary: Floats, degree: i
 
 def are_even(parameters: Floats, degree: int) -> bool:
     """Whether all moments vanish but those of c of even degree and order, as they do for ellipsoids."""
-    orders = [(l, m) for l in range(2, degree + 1) for m in range(l + 1)]
-    table = parameters[1:].reshape(len(orders), 4)
-    odd = np.array([l % 2 or m % 2 for l, m in orders], dtype=bool)
-    return not (np.any(table[odd]) or np.any(table[:, S_1:]))
+    return not np.any(parameters[_others(degree)])
+
+
+@lru_cache
+def _others(degree: int) -> NDArray[np.int64]:
+    """Return where the parameters are that vanish for even moments."""
+    c = [place_of(l, m) for l in range(2, degree + 1) for m in range(l + 1) if l % 2 or m % 2]
+    s = [place_of(l, m) + S_1 for l in range(2, degree + 1) for m in range(l + 1)]
+    return np.array([place + body for place in c + s for body in (C_1, C_2)], dtype=np.int64)
 
 
 class ArrayLanes:
