@@ -158,7 +158,7 @@ class RigidBody(Value):
         """Return the inertia matrix in the shape's frame: the shape's, or what the user gave in its place."""
         where = f"RigidBody {self.name}: inertia"
         if given is None:
-            if self.shape.specific_inertia is None:
+            if not self.shape.trace_is_known:
                 raise InputError(
                     f"{where}: coefficients of degree 2 do not fix its trace: give inertia=, three principal "
                     "moments or a matrix (3, 3)"

@@ -174,9 +174,12 @@ class StokesCoefficients(GivenMoments):
             reference_radius=quantity(radius, "m"),
             degree=degree,
             centre=values[1:4].copy(),
-            specific_inertia=None,
+            trace_is_known=False,
             _values=values,
         )
+
+        inertia = specific_inertia(second_degree(self.moments(2, self.centre, np.eye(3))))
+        self._set(specific_inertia=inertia - np.trace(inertia) / 3 * np.eye(3))
 
     def _factors(self, degree: int, radius: float) -> Floats:
         """Return what makes the moments of the harmonics R_lm = r^l P_lm e^(i m phi)/(l + m)! of coefficients.
@@ -193,8 +196,7 @@ class StokesCoefficients(GivenMoments):
     def completed_inertia(self, given: Floats, mass: float, where: str) -> Floats:
         """Return the inertia matrix (3, 3) [kg m2] of the given one's trace and the coefficients of degree 2."""
         trace = float(np.trace(given))
-        second = second_degree(self.moments(2, self.centre, np.eye(3)))
-        result = (trace / 3) * np.eye(3) - mass * (second - np.trace(second) / 3 * np.eye(3))
+        result = (trace / 3) * np.eye(3) + mass * self.specific_inertia
         if np.abs(result - given).max() > AGREEMENT * trace:
             raise InputError(
                 f"{where}: it does not agree with the coefficients of degree 2, which with this trace make "

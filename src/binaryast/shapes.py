@@ -28,8 +28,10 @@ class Shape(Value, ABC):
         Mass [kg], of a shape that has one of its own.
     centre : ndarray
         Mass centre (3,) [m].
-    specific_inertia : ndarray or None
-        Inertia matrix about the mass centre over the mass (3, 3) [m2]; None where it is not known.
+    specific_inertia : ndarray
+        Inertia matrix about the mass centre over the mass (3, 3) [m2].
+    trace_is_known : bool
+        Whether its trace is known too; where it is not, the matrix has none.
     points : tuple of ndarray or None
         Positions (k, 3) [m] and fractions of the mass (k,) of point masses with the same gravity, where there are some.
     pieces : list of tuple of ndarray
@@ -41,7 +43,8 @@ class Shape(Value, ABC):
     mass: float | None = None
     points: tuple[Floats, Floats] | None = None
     centre: Floats
-    specific_inertia: Floats | None
+    specific_inertia: Floats
+    trace_is_known: bool = True
 
     @property
     @abstractmethod
