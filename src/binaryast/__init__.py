@@ -12,9 +12,12 @@ if TYPE_CHECKING:
     from binaryast import analysis, catalogue, constants, equations, errors, plotting, scenario
     from binaryast.bodies import RigidBody
     from binaryast.errors import BinaryastError
+    from binaryast.filling import mascons
     from binaryast.gravity import PairPotential, PointMass, PointPairs, SecondDegree, pair_potential
     from binaryast.integrators import LGVI, RungeKutta
+    from binaryast.layered import Layered
     from binaryast.orbits import Orbit
+    from binaryast.polyhedron import Polyhedron
     from binaryast.propagation import propagate
     from binaryast.shapes import Dumbbell, Ellipsoid, Point, PointCloud, Shape, Sphere
     from binaryast.state import RelativeState, State
@@ -28,6 +31,7 @@ _HOMES = {
     "Dumbbell": "shapes",
     "Ellipsoid": "shapes",
     "LGVI": "integrators",
+    "Layered": "layered",
     "MutualGravity": "system",
     "Orbit": "orbits",
     "PairPotential": "gravity",
@@ -35,6 +39,7 @@ _HOMES = {
     "PointCloud": "shapes",
     "PointMass": "gravity",
     "PointPairs": "gravity",
+    "Polyhedron": "polyhedron",
     "RelativeState": "state",
     "RigidBody": "bodies",
     "RungeKutta": "integrators",
@@ -44,6 +49,7 @@ _HOMES = {
     "State": "state",
     "System": "system",
     "Trajectory": "trajectory",
+    "mascons": "filling",
     "pair_potential": "gravity",
     "propagate": "propagation",
 }
@@ -54,6 +60,7 @@ __all__ = [
     "BinaryastError",
     "Dumbbell",
     "Ellipsoid",
+    "Layered",
     "MutualGravity",
     "Orbit",
     "PairPotential",
@@ -61,6 +68,7 @@ __all__ = [
     "PointCloud",
     "PointMass",
     "PointPairs",
+    "Polyhedron",
     "RelativeState",
     "RigidBody",
     "RungeKutta",
@@ -76,6 +84,7 @@ __all__ = [
     "constants",
     "equations",
     "errors",
+    "mascons",
     "pair_potential",
     "plotting",
     "propagate",

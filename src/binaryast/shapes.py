@@ -30,13 +30,21 @@ class Shape(Value, ABC):
     points : tuple of ndarray or None
         Positions (k, 3) [m] and fractions of the mass (k,) of point masses with the same gravity, where there are some.
     pieces : list of tuple of ndarray
-        The surface as ellipsoids: centre (3,) and semi-axes (3,) [m] of each; empty for what never touches.
+        The surface as ellipsoids: centre (3,) and semi-axes [m] of each, along the axes of the shape's frame (3,) or as
+        the columns of a matrix (3, 3); empty for what never touches.
+    corners : ndarray or None
+        Vertices (k, 3) [m] of a surface of faces, None where there are none: its picture, and what a sphere must hold.
     """
 
     volume: float | None = None
     points: tuple[Floats, Floats] | None = None
+    corners: Floats | None = None
     centre: Floats
     specific_inertia: Floats
+
+    def moments(self, degree: int, origin: Floats, turn: Floats) -> Floats:
+        """Return the specific moments up to a total degree in a frame with that origin [m] and axes, its columns."""
+        raise NotImplementedError
 
     @property
     @abstractmethod
