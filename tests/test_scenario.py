@@ -198,3 +198,65 @@ def test_a_point_in_a_file() -> None:
     scenario = loads(text.replace('"13.43 h"', '"none"'), name="mine", where="mine.toml")
     run = ba.propagate(scenario.system, scenario.state, duration=1 * u.h, integrator=scenario.integrator)
     assert run.status == "completed"
+
+
+ROCK = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+
+
+def with_shape(shape: str) -> str:
+    start = PLAIN.index("shape = {")
+    return PLAIN[:start] + f"shape = {shape}" + PLAIN[PLAIN.index("\n", start) :]
+
+
+def test_a_polyhedron_from_a_file_beside_the_scenario(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "shapes").mkdir()
+    (tmp_path / "shapes" / "rock.obj").write_text(ROCK)
+    path = tmp_path / "mine.toml"
+    path.write_text(with_shape('{ type = "Polyhedron", file = "shapes/rock.obj", unit = "km" }'))
+    monkeypatch.chdir(tmp_path / "shapes")
+    shape = load(path).system.primary.shape
+    assert isinstance(shape, ba.Polyhedron)
+    assert shape.volume == pytest.approx(1e9 / 6)
+    monkeypatch.chdir(tmp_path)
+    assert load("mine.toml").system.primary.shape.volume == shape.volume
+    inner = '{ type = "Sphere", radius = "100 m" }'
+    layers = f'outer = {{ type = "Sphere", radius = "400 m" }}, inner = {inner}, density_ratio = 2'
+    path.write_text(with_shape(f'{{ type = "Layered", {layers} }}'))
+    assert isinstance(load(path).system.primary.shape, ba.Layered)
+
+
+@pytest.mark.parametrize(
+    ("shape", "says"),
+    [
+        ('{ type = "Polyhedron", unit = "km" }', "bodies[0].shape.file is missing"),
+        ('{ type = "Polyhedron", file = "rock.obj" }', "bodies[0].shape.unit is missing"),
+        ('{ type = "Polyhedron", file = "rock.obj", unit = "kg" }', "expected the unit of a length"),
+        ('{ type = "Polyhedron", file = "rock.obj", unit = 1000 }', "expected the unit of a length"),
+        ('{ type = "Polyhedron", file = 3, unit = "km" }', "file: expected a text in quotes, got 3"),
+        ('{ type = "Polyhedron", file = "open.obj", unit = "km" }', "open.obj: Polyhedron: the mesh is not one sound"),
+        ('{ type = "Polyhedron", file = "rock.obj", unit = "km", mend = 1 }', "mend: expected true or false"),
+        ('{ type = "Polyhedron", file = "rock.obj", unit = "km", scale = 2 }', "shape.scale: unknown key"),
+        ('{ type = "Polyhedon", file = "rock.obj" }', "did you mean 'Polyhedron'"),
+        ('{ type = "Layered", outer = "big", inner = "small", density_ratio = 1 }', "outer: expected a ba.Ellipsoid"),
+        (
+            '{ type = "Layered", outer = { type = "Sphere" }, inner = { type = "Sphere" }, density_ratio = 1 }',
+            "bodies[0].shape.outer.radius is missing",
+        ),
+    ],
+)
+def test_one_line_for_each_mistake_in_a_shape(shape: str, says: str, tmp_path: Path) -> None:
+    (tmp_path / "rock.obj").write_text(ROCK)
+    (tmp_path / "open.obj").write_text(ROCK.replace("f 1 3 2", "f 1 2 4"))
+    path = tmp_path / "mine.toml"
+    path.write_text(with_shape(shape))
+    with pytest.raises(ScenarioError) as caught:
+        load(path)
+    assert says in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_mesh_that_is_not_there(tmp_path: Path) -> None:
+    path = tmp_path / "mine.toml"
+    path.write_text(with_shape('{ type = "Polyhedron", file = "none.obj", unit = "km" }'))
+    with pytest.raises(StorageError, match=r"none\.obj: no such file"):
+        load(path)

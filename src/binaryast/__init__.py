@@ -13,9 +13,12 @@ if TYPE_CHECKING:
     from binaryast.bodies import RigidBody
     from binaryast.coefficients import InertiaIntegrals, StokesCoefficients
     from binaryast.errors import BinaryastError
+    from binaryast.filling import mascons
     from binaryast.gravity import Multipole, PairPotential, PointMass, PointPairs, SecondDegree, pair_potential
     from binaryast.integrators import LGVI, RungeKutta
+    from binaryast.layered import Layered
     from binaryast.orbits import Orbit
+    from binaryast.polyhedron import Polyhedron
     from binaryast.propagation import propagate
     from binaryast.shapes import Dumbbell, Ellipsoid, Point, PointCloud, Shape, Sphere
     from binaryast.state import RelativeState, State
@@ -31,6 +34,7 @@ _HOMES = {
     "Ellipsoid": "shapes",
     "InertiaIntegrals": "coefficients",
     "LGVI": "integrators",
+    "Layered": "layered",
     "Multipole": "gravity",
     "MutualGravity": "system",
     "Orbit": "orbits",
@@ -40,6 +44,7 @@ _HOMES = {
     "PointCloud": "shapes",
     "PointMass": "gravity",
     "PointPairs": "gravity",
+    "Polyhedron": "polyhedron",
     "RelativeState": "state",
     "RigidBody": "bodies",
     "RungeKutta": "integrators",
@@ -51,6 +56,7 @@ _HOMES = {
     "System": "system",
     "Trajectory": "trajectory",
     "Union": "unions",
+    "mascons": "filling",
     "pair_potential": "gravity",
     "propagate": "propagation",
 }
@@ -62,6 +68,7 @@ __all__ = [
     "Dumbbell",
     "Ellipsoid",
     "InertiaIntegrals",
+    "Layered",
     "Multipole",
     "MutualGravity",
     "Orbit",
@@ -71,6 +78,7 @@ __all__ = [
     "PointCloud",
     "PointMass",
     "PointPairs",
+    "Polyhedron",
     "RelativeState",
     "RigidBody",
     "RungeKutta",
@@ -88,6 +96,7 @@ __all__ = [
     "constants",
     "equations",
     "errors",
+    "mascons",
     "pair_potential",
     "plotting",
     "propagate",

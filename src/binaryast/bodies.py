@@ -1,5 +1,6 @@
 """Rigid bodies: a shape with mass, brought to its mass centre and principal axes."""
 
+import warnings
 from copy import deepcopy
 from dataclasses import dataclass, field
 from itertools import permutations, product
@@ -10,13 +11,14 @@ import numpy as np
 from astropy.units import Quantity
 
 from binaryast.constants import G
-from binaryast.errors import InputError
+from binaryast.errors import DensityWarning, InputError
 from binaryast.kernels.moments import from_inertia
 from binaryast.shapes import Point, Shape
 from binaryast.units import LARGEST, Floats, as_quantity, brief, quantity, to_si
 from binaryast.values import Value
 
 LONGEST_NAME = 64
+DENSITIES = (100.0, 20000.0)  # kg / m3: what small bodies are made of lies between
 EQUAL_MOMENTS = 1e-12  # relative difference below which two principal axes may be chosen freely
 
 
@@ -63,6 +65,11 @@ class RigidBody(Value):
     InputError
         For none or several of mass, density and gm; a shape without volume given a density; a shape without inertia
         given none; moments that no mass can have: negative, zero, or one larger than the sum of the other two.
+
+    Warns
+    -----
+    DensityWarning
+        Where a mesh of faces and its mass make a density that no small body has: its unit of length may be wrong.
 
     Examples
     --------
@@ -124,6 +131,8 @@ class RigidBody(Value):
             offset=quantity(shape.centre, "m"),
             si=BodyFloats(mass_si, gm_si, moments),
         )
+        if shape.corners is not None and density is None:
+            self._look_at_the_density()
 
     @property
     def is_point(self) -> bool:
@@ -218,6 +227,20 @@ class RigidBody(Value):
             result[4:10] = from_inertia(np.diag(self.si.moments / self.si.mass))[np.triu_indices(3)]
         return result
 
+    def _look_at_the_density(self) -> None:
+        """Warn where the length unit of a mesh cannot be right for the mass given."""
+        lowest, highest = DENSITIES
+        if self.density is None or lowest <= self.density.value <= highest:
+            return
+        factor = np.cbrt(self.density.value / 2000)
+        change = f"{factor:.3g} times longer" if factor > 1 else f"{1 / factor:.3g} times shorter"
+        warnings.warn(
+            f"RigidBody {self.name}: {self.mass.value:g} kg in this mesh's volume make {self.density.value:.3g} kg/m3, "
+            f"expected {lowest:g} to {highest:g}: is its unit right? Lengths {change} would make 2000 kg/m3",
+            DensityWarning,
+            stacklevel=3,
+        )
+
     @property
     def points(self) -> tuple[Floats, Floats] | None:
         """Point masses in the body frame: positions (k, 3) [m] and fractions of the mass (k,); None without them."""
@@ -239,9 +262,16 @@ class RigidBody(Value):
         return surface
 
     @property
+    def corners(self) -> Floats | None:
+        """Vertices (k, 3) of a surface of faces in the body frame [m]; None without them."""
+        return None if self.shape.corners is None else (self.shape.corners - self.shape.centre) @ self.turn
+
+    @property
     def bounding_radius(self) -> float:
         """Radius of a sphere about the mass centre that holds the surface [m]; 0 without a surface."""
         reach = [np.linalg.norm(c) + np.sqrt(max(np.linalg.eigvalsh(m)[-1], 0.0)) for c, m in self.surface]
+        if self.corners is not None:
+            reach.append(np.linalg.norm(self.corners, axis=1).max())
         return float(max(reach, default=0.0))
 
 

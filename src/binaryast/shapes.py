@@ -37,11 +37,14 @@ class Shape(Value, ABC):
     pieces : list of tuple of ndarray
         The surface as ellipsoids: centre (3,) and semi-axes [m] of each, along the axes of the shape's frame (3,) or as
         the columns of a matrix (3, 3); empty for what never touches.
+    corners : ndarray or None
+        Vertices (k, 3) [m] of a surface of faces, None where there are none: its picture, and what a sphere must hold.
     """
 
     volume: float | None = None
     mass: float | None = None
     points: tuple[Floats, Floats] | None = None
+    corners: Floats | None = None
     centre: Floats
     specific_inertia: Floats
     trace_is_known: bool = True
