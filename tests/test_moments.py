@@ -14,6 +14,7 @@ from binaryast.errors import InputError, ScenarioError
 from binaryast.kernels import moments as monomials
 from binaryast.kernels.harmonics import harmonic_moments
 from binaryast.scenario import loads
+from tests.solids import box
 
 TURN = Rotation.from_rotvec([0.3, -0.5, 0.8]).as_matrix()
 ROCK = 2000 * u.kg / u.m**3
@@ -129,6 +130,19 @@ def test_a_union() -> None:
     hollow = ba.Part(ba.Sphere(1 * u.m), density=-ROCK, offset=[10, 0, 0] * u.m)
     assert ba.Union([ball, hollow]).mass == pytest.approx(2000 * 4 / 3 * np.pi * 26)
     np.testing.assert_allclose(ba.Union([ball, hollow]).centre, [10, 0, 0])
+
+
+def test_a_union_of_meshes() -> None:
+    """Two boxes side by side are the box that they make, in moments, corners and size."""
+    vertices, faces = box(high=(2.0, 3.0, 4.0))
+    half, whole = ba.Polyhedron(vertices * u.m, faces), ba.Polyhedron(vertices * [2, 1, 1] * u.m, faces)
+    union = ba.Union([ba.Part(half, density=ROCK), ba.Part(half, density=ROCK, offset=[2, 0, 0] * u.m)])
+    expected = whole.moments(5, np.zeros(3), TURN)
+    np.testing.assert_allclose(union.moments(5, np.zeros(3), TURN), expected, atol=1e-12 * np.abs(expected).max())
+    assert union.corners.shape == (16, 3)
+    assert ba.RigidBody("U", union).bounding_radius > 0.999999 * np.linalg.norm([2, 1.5, 2])
+    mixed = ba.Union([ba.Part(half, density=ROCK), ba.Part(ba.Sphere(1 * u.m), density=ROCK, offset=[5, 0, 0] * u.m)])
+    assert mixed.corners is None
 
 
 @pytest.mark.parametrize(

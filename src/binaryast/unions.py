@@ -124,7 +124,8 @@ class Union(Shape):
         self._set(parts=parts, mass=mass, fractions=masses / mass)
         self._set(centre=self.moments(1, np.zeros(3), np.eye(3))[1:4].copy())
         about = self.moments(2, self.centre, np.eye(3))
-        self._set(specific_inertia=specific_inertia(second_degree(about)), points=self._points())
+        self._set(specific_inertia=specific_inertia(second_degree(about)))
+        self._set(points=self._points(), corners=self._corners())
 
     def moments(self, degree: int, origin: Floats, turn: Floats) -> Floats:
         """Return the specific moments in another frame, see `Shape.moments`: each part's, taken there at once."""
@@ -143,6 +144,15 @@ class Union(Shape):
             positions.append(part.si.offset + part.shape.points[0] @ part.si.turn.T)
             fractions.append(part.shape.points[1] * fraction)
         return np.concatenate(positions), np.concatenate(fractions)
+
+    def _corners(self) -> Floats | None:
+        """Return the vertices of all parts, None where one is no mesh."""
+        corners = [
+            part.si.offset + part.shape.corners @ part.si.turn.T
+            for part in self.parts
+            if part.shape.corners is not None
+        ]
+        return np.concatenate(corners) if len(corners) == len(self.parts) else None
 
     @property
     def pieces(self) -> list[tuple[Floats, Floats]]:
