@@ -155,6 +155,7 @@ def test_a_union_of_meshes() -> None:
         (lambda: ba.Part("sphere", mass=1 * u.kg), "expected a shape"),
         (lambda: ba.Part(ba.Sphere(1 * u.m), mass=1 * u.kg, turn=2 * np.eye(3)), "not a rotation"),
         (lambda: ba.Part(ba.Sphere(1 * u.m), mass=1 * u.kg, offset=[1, 2] * u.m), "shape"),
+        (lambda: ba.Part(stokes(), mass=1 * u.kg), "has no inertia of its own"),
         (lambda: ba.Union([]), r"expected a list of ba.Part"),
         (lambda: ba.Union(ba.Sphere(1 * u.m)), r"expected a list of ba.Part"),
         (lambda: ba.Union([ba.Part(ba.Sphere(1 * u.m), mass=-1 * u.kg)]), "add up to -1 kg"),

@@ -41,8 +41,8 @@ class Part(Value):
     Raises
     ------
     InputError
-        For none or both of mass and density, zero, a shape without volume given a density, or a turn that is no
-        rotation.
+        For none or both of mass and density, zero, a shape without volume given a density, one without inertia, or a
+        turn that is no rotation.
 
     Examples
     --------
@@ -62,6 +62,8 @@ class Part(Value):
     def __post_init__(self) -> None:
         if not isinstance(self.shape, Shape):
             raise InputError(f"Part: shape: expected a shape such as ba.Ellipsoid(...), got {brief(self.shape)}")
+        if not self.shape.trace_is_known:
+            raise InputError(f"Part: a {type(self.shape).__name__} has no inertia of its own: it cannot be a part")
         if (self.mass is None) == (self.density is None):
             raise InputError("Part: give one of mass= and density=")
         if self.density is None:
