@@ -78,6 +78,17 @@ def test_options_take_the_place_of_the_entry(folder: Path, capsys: pytest.Captur
     assert run.step.value == 50
 
 
+def test_gravity_of_a_degree(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    arguments = ["run", "moshup", "--duration", "1d", "--no-picture", "--json", "--force", "-o", "a.h5"]
+    figures = {}
+    for degree, gravity in ((0, "PointMass()"), (2, "SecondDegree()"), (3, "Multipole(degree=3)")):
+        assert cli.main([*arguments, "--degree", str(degree)]) == 0
+        assert repr(ba.Trajectory.read("a.h5").system.gravity) == gravity
+        figures[degree] = json.loads(capsys.readouterr().out)["max_next_degree_term"]
+    assert figures[0] is None
+    assert 1e-5 < figures[3] == pytest.approx(figures[2], rel=0.05)  # of ellipsoids, that is degree 4 both times
+
+
 def test_going_on_from_a_file(folder: Path, capsys: pytest.CaptureFixture) -> None:
     assert cli.main(["run", "didymos", "--duration", "1d", "--no-picture"]) == 0
     assert cli.main(["run", "didymos.h5", "--duration", "1d", "--no-picture"]) == 0
@@ -103,7 +114,7 @@ def test_list_and_show(capsys: pytest.CaptureFixture) -> None:
     assert cli.main(["show", "didymos"]) == 0
     out = capsys.readouterr().out
     assert "didymos_system_15.tpc" in out
-    assert "separation 1183.9" in out
+    assert "separation 1184.1" in out
 
 
 WRONG = {
@@ -117,6 +128,10 @@ WRONG = {
     "an unknown option": (["--stp", "40s"], "unrecognized arguments"),
     "an unknown integrator": (["--integrator", "RK4"], "invalid choice"),
     "an order that is not there": (["--order", "3"], "invalid choice"),
+    "degree 1": (["--degree", "1"], "--degree: expected 0 (point masses) or 2 to 16, got 1"),
+    "degree -2": (["--degree", "-2"], "--degree: expected 0 (point masses) or 2 to 16, got -2"),
+    "degree 40": (["--degree", "40"], "--degree: expected 0 (point masses) or 2 to 16, got 40"),
+    "degree 2.5": (["--degree", "2.5"], "invalid int value"),
     "no folder": (["-o", "nowhere/run.h5"], "no folder"),
     "another kind of file": (["-o", "run.png"], "ends in .h5"),
     "a folder for a file": (["-o", "."], "is a folder"),

@@ -15,7 +15,8 @@ import binaryast as ba
 def test_import_loads_nothing_heavy() -> None:
     code = (
         "import sys, binaryast; binaryast.__version__; dir(binaryast);"
-        "print([name for name in ('numba', 'scipy', 'h5py', 'matplotlib', 'astropy', 'tqdm') if name in sys.modules])"
+        "print([name for name in ('numba', 'scipy', 'h5py', 'matplotlib', 'astropy', 'tqdm', 'trimesh')"
+        " if name in sys.modules])"
     )
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert result.stdout.strip() == "[]"
@@ -44,6 +45,14 @@ def test_every_public_name_is_documented_with_an_example() -> None:
         "propagate",
         "pair_potential",
         "PairPotential",
+        "Multipole",
+        "Union",
+        "Part",
+        "InertiaIntegrals",
+        "StokesCoefficients",
+        "Polyhedron",
+        "Layered",
+        "mascons",
     ):
         assert ">>>" in getattr(ba, name).__doc__
     for function in (ba.equations.continuous, ba.equations.discrete, ba.State.from_orbits, ba.State.circular_orbit):
@@ -53,7 +62,16 @@ def test_every_public_name_is_documented_with_an_example() -> None:
 def test_values_pickle() -> None:
     system, state = ba.catalogue.load("dumbbells")
     scenario = ba.catalogue.entry("moshup")
-    for value in (system, state, scenario, system.gravity, ba.SecondDegree(), ba.PointMass(), scenario.integrator):
+    for value in (
+        system,
+        state,
+        scenario,
+        system.gravity,
+        ba.SecondDegree(),
+        ba.Multipole(4),
+        ba.PointMass(),
+        scenario.integrator,
+    ):
         again = pickle.loads(pickle.dumps(value))
         assert type(again) is type(value)
     for value in (ba.RungeKutta(rtol=1e-9), ba.Point(), ba.Orbit(1 * u.km), *ba.catalogue.load("sn263")):

@@ -1,11 +1,13 @@
 """Runs: the times that are met, what ends a run, what is refused before it starts."""
 
+import warnings
+
 import astropy.units as u
 import numpy as np
 import pytest
 
 import binaryast as ba
-from binaryast.errors import ContactError, EndWarning, InputError, StepError, StepWarning
+from binaryast.errors import ContactError, EndWarning, GravityWarning, InputError, StepError, StepWarning
 from binaryast.schedule import schedule
 
 
@@ -70,7 +72,7 @@ def falling() -> tuple[ba.System, ba.State]:
 
 
 def test_contact_ends_a_run() -> None:
-    with pytest.warns(EndWarning, match="B touched A"):
+    with pytest.warns(EndWarning, match="B touched A"), pytest.warns(GravityWarning, match="leaves out"):
         run = ba.propagate(*falling(), duration=10 * u.day, integrator=ba.LGVI(5 * u.s), save_every=1 * u.h)
     assert run.status == "contact"
     assert 236 < run.separation[-1].value <= 240  # the long axes point at each other
@@ -139,8 +141,34 @@ def test_touching_is_a_matter_of_shape_not_of_bounding_spheres() -> None:
     bodies = [ba.RigidBody(n, ba.Ellipsoid(300 * u.m, 100 * u.m, 100 * u.m), mass=1e10 * u.kg) for n in "AB"]
     zero = np.zeros((2, 3))
     state = ba.State([[0, -110, 0], [0, 110, 0]] * u.m, zero * u.m / u.s, [np.eye(3)] * 2, zero * u.rad / u.s)
-    run = ba.propagate(ba.System(bodies), state, duration=10 * u.s, integrator=ba.LGVI(1 * u.s))
+    with pytest.warns(GravityWarning, match="leaves out"):
+        run = ba.propagate(ba.System(bodies), state, duration=10 * u.s, integrator=ba.LGVI(1 * u.s))
     assert run.status == "completed"
+
+
+def test_the_size_of_what_gravity_leaves_out() -> None:
+    """Seen at saved rows, of the pair for which it is largest; said once, where it is more than a thousandth."""
+    bodies = [ba.RigidBody(n, ba.Ellipsoid(300 * u.m, 100 * u.m, 100 * u.m), mass=1e10 * u.kg) for n in "ABC"]
+    zero = np.zeros((3, 3))
+    place = [[0, 0, 0], [0, 650, 0], [0, 5000, 0]] * u.m
+    state = ba.State(place, zero * u.m / u.s, [np.eye(3)] * 3, zero * u.rad / u.s)
+    figures = {}
+    for gravity in (ba.SecondDegree(), ba.Multipole(2), ba.Multipole(4), ba.Multipole(6), ba.PointMass()):
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always")
+            run = ba.propagate(ba.System(bodies, gravity), state, duration=100 * u.s, integrator=ba.LGVI(10 * u.s))
+        figures[repr(gravity)] = run.max_next_degree_term
+        told = [str(warning.message) for warning in found if warning.category is GravityWarning]
+        large = run.max_next_degree_term is not None and run.max_next_degree_term > 1e-3
+        assert len(told) == large
+        assert all("between A and B leaves out terms up to" in text for text in told)
+        assert ("next degrees of gravity" in run.summary()) == (run.max_next_degree_term is not None)
+    assert figures["PointMass()"] is None
+    assert figures["SecondDegree()"] == figures["Multipole(degree=2)"]
+    pair = [ba.System(bodies[:2], ba.Multipole(n)).mutual_gravity([0, 650, 0] * u.m).energy.value for n in (2, 4, 6, 8)]
+    for degree, step in zip((2, 4, 6), np.diff(pair), strict=True):
+        size = abs(step / pair[0])  # at the start, where they are nearly as close as they come
+        assert figures[f"Multipole(degree={degree})"] == pytest.approx(size, rel=0.05)
 
 
 def test_a_pass_within_one_step_is_a_contact_all_the_same() -> None:

@@ -106,6 +106,16 @@ def test_names_that_no_file_has(run: ba.Trajectory, name: object) -> None:
         run.write(name)
 
 
+def test_a_file_of_before_gravity_had_degrees(run: ba.Trajectory, tmp_path: Path) -> None:
+    path = run.write(tmp_path / "run.h5")
+    assert ba.Trajectory.read(path).max_next_degree_term == run.max_next_degree_term
+    with h5py.File(path, "r+") as file:
+        del file.attrs["max_next_degree_term"]
+    again = ba.Trajectory.read(path, verify=False)
+    assert again.max_next_degree_term is None
+    assert "next degrees" not in again.summary()
+
+
 def test_a_run_goes_on_from_a_file(run: ba.Trajectory, tmp_path: Path) -> None:
     again = ba.Trajectory.read(run.write(tmp_path / "run.h5"))
     more = ba.propagate(again.system, again[-1], duration=1 * u.h, integrator=again.integrator)

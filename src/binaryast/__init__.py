@@ -11,15 +11,20 @@ from binaryast import constants as _constants
 if TYPE_CHECKING:
     from binaryast import analysis, catalogue, constants, equations, errors, plotting, scenario
     from binaryast.bodies import RigidBody
+    from binaryast.coefficients import InertiaIntegrals, StokesCoefficients
     from binaryast.errors import BinaryastError
-    from binaryast.gravity import PairPotential, PointMass, PointPairs, SecondDegree, pair_potential
+    from binaryast.filling import mascons
+    from binaryast.gravity import Multipole, PairPotential, PointMass, PointPairs, SecondDegree, pair_potential
     from binaryast.integrators import LGVI, RungeKutta
+    from binaryast.layered import Layered
     from binaryast.orbits import Orbit
+    from binaryast.polyhedron import Polyhedron
     from binaryast.propagation import propagate
     from binaryast.shapes import Dumbbell, Ellipsoid, Point, PointCloud, Shape, Sphere
     from binaryast.state import RelativeState, State
     from binaryast.system import MutualGravity, System
     from binaryast.trajectory import Trajectory
+    from binaryast.unions import Part, Union
 
 __version__ = _constants.VERSION
 
@@ -27,14 +32,19 @@ _HOMES = {
     "BinaryastError": "errors",
     "Dumbbell": "shapes",
     "Ellipsoid": "shapes",
+    "InertiaIntegrals": "coefficients",
     "LGVI": "integrators",
+    "Layered": "layered",
+    "Multipole": "gravity",
     "MutualGravity": "system",
     "Orbit": "orbits",
     "PairPotential": "gravity",
+    "Part": "unions",
     "Point": "shapes",
     "PointCloud": "shapes",
     "PointMass": "gravity",
     "PointPairs": "gravity",
+    "Polyhedron": "polyhedron",
     "RelativeState": "state",
     "RigidBody": "bodies",
     "RungeKutta": "integrators",
@@ -42,8 +52,11 @@ _HOMES = {
     "Shape": "shapes",
     "Sphere": "shapes",
     "State": "state",
+    "StokesCoefficients": "coefficients",
     "System": "system",
     "Trajectory": "trajectory",
+    "Union": "unions",
+    "mascons": "filling",
     "pair_potential": "gravity",
     "propagate": "propagation",
 }
@@ -54,13 +67,18 @@ __all__ = [
     "BinaryastError",
     "Dumbbell",
     "Ellipsoid",
+    "InertiaIntegrals",
+    "Layered",
+    "Multipole",
     "MutualGravity",
     "Orbit",
     "PairPotential",
+    "Part",
     "Point",
     "PointCloud",
     "PointMass",
     "PointPairs",
+    "Polyhedron",
     "RelativeState",
     "RigidBody",
     "RungeKutta",
@@ -68,14 +86,17 @@ __all__ = [
     "Shape",
     "Sphere",
     "State",
+    "StokesCoefficients",
     "System",
     "Trajectory",
+    "Union",
     "__version__",
     "analysis",
     "catalogue",
     "constants",
     "equations",
     "errors",
+    "mascons",
     "pair_potential",
     "plotting",
     "propagate",

@@ -1,5 +1,6 @@
 """Rigid bodies: a shape with mass, brought to its mass centre and principal axes."""
 
+import warnings
 from copy import deepcopy
 from dataclasses import dataclass, field
 from itertools import permutations, product
@@ -10,12 +11,14 @@ import numpy as np
 from astropy.units import Quantity
 
 from binaryast.constants import G
-from binaryast.errors import InputError
+from binaryast.errors import DensityWarning, InputError
+from binaryast.kernels.moments import from_inertia
 from binaryast.shapes import Point, Shape
 from binaryast.units import LARGEST, Floats, as_quantity, brief, quantity, to_si
 from binaryast.values import Value
 
 LONGEST_NAME = 64
+DENSITIES = (100.0, 20000.0)  # kg / m3: what small bodies are made of lies between
 EQUAL_MOMENTS = 1e-12  # relative difference below which two principal axes may be chosen freely
 
 
@@ -40,10 +43,11 @@ class RigidBody(Value):
     shape : Shape
         Its geometry.
     mass, density, gm : Quantity
-        Exactly one of the three: mass, bulk density, or G times mass.
+        Exactly one of the three: mass, bulk density, or G times mass; none for a shape that has a mass of its own.
     inertia : Quantity, optional
         Overrides the shape's: three principal moments about the shape's axes, or the inertia matrix (3, 3) about the
-        mass centre in the shape's frame.
+        mass centre in the shape's frame. Needed where the shape has none, such as `StokesCoefficients`. The body's
+        moments of mass of second degree follow it, those of higher degree remain the shape's.
 
     Attributes
     ----------
@@ -59,8 +63,13 @@ class RigidBody(Value):
     Raises
     ------
     InputError
-        For none or several of mass, density and gm; a shape without volume given a density; moments that no mass can
-        have: negative, zero, or one larger than the sum of the other two.
+        For none or several of mass, density and gm; a shape without volume given a density; a shape without inertia
+        given none; moments that no mass can have: negative, zero, or one larger than the sum of the other two.
+
+    Warns
+    -----
+    DensityWarning
+        Where a mesh of faces and its mass make a density that no small body has: its unit of length may be wrong.
 
     Examples
     --------
@@ -100,7 +109,7 @@ class RigidBody(Value):
             raise InputError(f"RigidBody {name}: shape: expected a shape such as ba.Ellipsoid(...), got {brief(shape)}")
         given = {"mass": mass, "density": density, "gm": gm}
         given = {key: deepcopy(value) for key, value in given.items() if value is not None}
-        if len(given) != 1:
+        if len(given) != 1 and (given or shape.mass is None):
             found = " and ".join(given) or "none"
             raise InputError(f"RigidBody {name}: give exactly one of mass=, density= and gm=, got {found}")
         also = {} if inertia is None else {"inertia": deepcopy(inertia)}
@@ -108,7 +117,7 @@ class RigidBody(Value):
         mass_si, gm_si = self._masses(**given)
         if not 1 / LARGEST < mass_si < LARGEST:
             raise InputError(f"RigidBody {name}: a mass of {mass_si:g} kg is beyond what can be computed with")
-        matrix = shape.specific_inertia * mass_si if inertia is None else self._given_inertia(inertia)
+        matrix = self._inertia_matrix(inertia, mass_si)
         moments, turn = principal_axes(matrix, f"RigidBody {name}: inertia")
         if not isinstance(shape, Point) or inertia is not None:
             self._check_moments(moments)
@@ -122,6 +131,8 @@ class RigidBody(Value):
             offset=quantity(shape.centre, "m"),
             si=BodyFloats(mass_si, gm_si, moments),
         )
+        if shape.corners is not None and density is None:
+            self._look_at_the_density()
 
     @property
     def is_point(self) -> bool:
@@ -146,17 +157,28 @@ class RigidBody(Value):
                     f"{where}: a {type(self.shape).__name__} has no volume: give mass= or gm=, not density="
                 )
             value = float(to_si(density, "kg / m3", f"{where}: density", sign="positive")) * self.shape.volume
+        elif mass is None and self.shape.mass is not None:
+            value = self.shape.mass
         else:
             value = float(to_si(mass, "kg", f"{where}: mass", sign="positive"))
         return value, G * value
 
-    def _given_inertia(self, inertia: Quantity) -> Floats:
-        """Return the inertia matrix in the shape's frame that the user gave."""
+    def _inertia_matrix(self, given: Quantity | None, mass: float) -> Floats:
+        """Return the inertia matrix in the shape's frame: the shape's, or what the user gave in its place."""
         where = f"RigidBody {self.name}: inertia"
-        inertia = as_quantity(inertia, "kg m2", where)
-        if inertia.shape == (3,):
-            return np.diag(to_si(inertia, "kg m2", where, shape=(3,), sign="positive"))
-        return to_si(inertia, "kg m2", where, shape=(3, 3))
+        if given is None:
+            if not self.shape.trace_is_known:
+                raise InputError(
+                    f"{where}: coefficients of degree 2 do not fix its trace: give inertia=, three principal "
+                    "moments or a matrix (3, 3)"
+                )
+            return self.shape.specific_inertia * mass
+        given = as_quantity(given, "kg m2", where)
+        if given.shape == (3,):
+            matrix = np.diag(to_si(given, "kg m2", where, shape=(3,), sign="positive"))
+        else:
+            matrix = to_si(given, "kg m2", where, shape=(3, 3))
+        return self.shape.completed_inertia(matrix, mass, where)
 
     def _check_moments(self, moments: Floats) -> None:
         """Raise where no rigid mass has these principal moments."""
@@ -174,6 +196,51 @@ class RigidBody(Value):
                 "the largest can be at most the sum of the other two"
             )
 
+    def moments(self, degree: int) -> Floats:
+        """Return the integrals of x^i y^j z^k dm over the mass, up to i + j + k = degree, in the body frame.
+
+        Those of first degree are zero, for the origin is the mass centre. Those of second degree are what the principal
+        moments of inertia say, so they follow an ``inertia`` that was given.
+
+        Returns
+        -------
+        ndarray
+            Flat, ordered by total degree, then by falling powers of x, then of y: 1, x, y, z, x^2, xy, xz, y^2, ..
+            [m^(i + j + k)].
+
+        Raises
+        ------
+        InputError
+            Where the shape's moments are not known up to this degree.
+
+        Examples
+        --------
+        >>> import astropy.units as u
+        >>> import binaryast as ba
+        >>> body = ba.RigidBody("B", ba.Ellipsoid(5 * u.m, 4 * u.m, 3 * u.m), mass=1 * u.kg)
+        >>> print(body.moments(2))
+        [1.  0.  0.  0.  5.  0.  0.  3.2 0.  1.8]
+        """
+        result = self.shape.moments(degree, self.shape.centre, self.turn).copy()
+        result[1:4] = 0.0
+        if degree >= 2:
+            result[4:10] = from_inertia(np.diag(self.si.moments / self.si.mass))[np.triu_indices(3)]
+        return result
+
+    def _look_at_the_density(self) -> None:
+        """Warn where the length unit of a mesh cannot be right for the mass given."""
+        lowest, highest = DENSITIES
+        if self.density is None or lowest <= self.density.value <= highest:
+            return
+        factor = np.cbrt(self.density.value / 2000)
+        change = f"{factor:.3g} times longer" if factor > 1 else f"{1 / factor:.3g} times shorter"
+        warnings.warn(
+            f"RigidBody {self.name}: {self.mass.value:g} kg in this mesh's volume make {self.density.value:.3g} kg/m3, "
+            f"expected {lowest:g} to {highest:g}: is its unit right? Lengths {change} would make 2000 kg/m3",
+            DensityWarning,
+            stacklevel=3,
+        )
+
     @property
     def points(self) -> tuple[Floats, Floats] | None:
         """Point masses in the body frame: positions (k, 3) [m] and fractions of the mass (k,); None without them."""
@@ -188,18 +255,24 @@ class RigidBody(Value):
 
         A point p is on the surface where (p - centre) . matrix^-1 (p - centre) = 1.
         """
-        return [
-            ((centre - self.shape.centre) @ self.turn, self.turn.T @ np.diag(axes**2) @ self.turn)
-            for centre, axes in self.shape.pieces
-        ]
+        surface: list[tuple[Floats, Floats]] = []
+        for centre, axes in self.shape.pieces:
+            columns = self.turn.T @ (axes if axes.ndim == 2 else np.diag(axes))
+            surface.append(((centre - self.shape.centre) @ self.turn, columns @ columns.T))
+        return surface
+
+    @property
+    def corners(self) -> Floats | None:
+        """Vertices (k, 3) of a surface of faces in the body frame [m]; None without them."""
+        return None if self.shape.corners is None else (self.shape.corners - self.shape.centre) @ self.turn
 
     @property
     def bounding_radius(self) -> float:
         """Radius of a sphere about the mass centre that holds the surface [m]; 0 without a surface."""
-        return max(
-            (float(np.linalg.norm(centre - self.shape.centre) + axes.max()) for centre, axes in self.shape.pieces),
-            default=0.0,
-        )
+        reach = [np.linalg.norm(c) + np.sqrt(max(np.linalg.eigvalsh(m)[-1], 0.0)) for c, m in self.surface]
+        if self.corners is not None:
+            reach.append(np.linalg.norm(self.corners, axis=1).max())
+        return float(max(reach, default=0.0))
 
 
 def principal_axes(matrix: Floats, name: str) -> tuple[Floats, Floats]:

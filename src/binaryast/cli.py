@@ -20,6 +20,7 @@ from binaryast.constants import VERSION
 from binaryast.errors import BinaryastError, InputError
 
 if TYPE_CHECKING:
+    from binaryast.gravity import Gravity
     from binaryast.integrators import Integrator
     from binaryast.scenario import Scenario
     from binaryast.state import State
@@ -112,7 +113,7 @@ def parser() -> argparse.ArgumentParser:
     running.add_argument("--duration", metavar="TIME", help="how long, such as 60d")
     running.add_argument("--step", metavar="TIME", help="largest step, such as 40s")
     running.add_argument("--save-every", metavar="TIME", help="time between saved rows, such as 10min")
-    running.add_argument("--degree", type=int, choices=(0, 2), help="degree of gravity: 0 (point masses) or 2")
+    running.add_argument("--degree", type=int, metavar="N", help="degree of gravity: 0 (point masses), or 2 to 16")
     running.add_argument("--integrator", choices=("LGVI", "RungeKutta"), help="method (default: LGVI)")
     running.add_argument("--order", type=int, choices=(2,), default=2, help="order of the method (default: 2)")
     running.add_argument("--frame", choices=("relative", "inertial"), help="whose variables are stepped")
@@ -269,8 +270,6 @@ def _time(text: str | None, option: str) -> Any:
 
 def _start(options: argparse.Namespace) -> tuple["System", "State", "Integrator", Any, Any]:
     """Return what to run: a scenario or the end of an earlier run, with the options in the place of its own values."""
-    from binaryast import gravity
-
     duration, step, save_every = (
         _time(getattr(options, name), f"--{name.replace('_', '-')}") for name in ("duration", "step", "save_every")
     )
@@ -287,10 +286,24 @@ def _start(options: argparse.Namespace) -> tuple["System", "State", "Integrator"
         duration = entry.duration if duration is None else duration
         save_every = entry.save_every if save_every is None else save_every
     if options.degree is not None:
-        pair = replace(pair, gravity=gravity.PointMass() if options.degree == 0 else gravity.SecondDegree())
+        pair = replace(pair, gravity=_gravity_of_degree(options.degree))
     if save_every is not None and options.save_every is None and save_every > duration:
         save_every = None  # the scenario's, for its own longer duration
     return pair, start, _integrator(integrator, step, options), duration, save_every
+
+
+def _gravity_of_degree(degree: int) -> "Gravity":
+    """Return the gravity that ``--degree`` asks for."""
+    from binaryast import gravity
+
+    if degree in (0, 2):
+        return gravity.PointMass() if degree == 0 else gravity.SecondDegree()
+    try:
+        return gravity.Multipole(degree)
+    except InputError:
+        raise InputError(
+            f"--degree: expected 0 (point masses) or 2 to {gravity.LARGEST_DEGREE}, got {degree}"
+        ) from None
 
 
 def _integrator(before: "Integrator", step: Any, options: argparse.Namespace) -> "Integrator":

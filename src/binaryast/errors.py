@@ -24,6 +24,10 @@ class ContactError(InputError):
     """Bodies that overlap at the start."""
 
 
+class MeshError(InputError):
+    """A mesh that is not one sound surface: open, turned inside out, in contact with itself, ..."""
+
+
 class ScenarioError(InputError):
     """A scenario file that cannot be understood."""
 
@@ -42,6 +46,18 @@ class BinaryastWarning(UserWarning):
 
 class StepWarning(BinaryastWarning):
     """A step that works but is doubtful."""
+
+
+class GravityWarning(BinaryastWarning):
+    """A gravity that is cut at a low degree for bodies so near to each other."""
+
+
+class MeshWarning(BinaryastWarning):
+    """A mesh that was mended on request: what was done to it."""
+
+
+class DensityWarning(BinaryastWarning):
+    """A mass that does not go with a mesh: its length unit is wrong, or the mass is."""
 
 
 class EndWarning(BinaryastWarning):

@@ -12,8 +12,11 @@ import numpy as np
 
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError
+from binaryast.kernels.mutual.multipole_parameters import parameters_of, term_sizes
 from binaryast.units import Floats, brief, numbers
 from binaryast.values import Value
+
+LARGEST_DEGREE = 16  # of a multipole potential: beyond it, compiling takes longer than it is worth
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -26,6 +29,15 @@ class Gravity(Value, ABC):
     def potential(self) -> Callable[..., Any]:
         """The compiled pair potential: U, dU/dX, M from (parameters, X, R)."""
 
+    @property
+    def cut_at(self) -> int | None:
+        """The total degree at which the model ends; None where it is not a sum over degrees."""
+        return None
+
+    def potential_for(self, parameters: Floats) -> Callable[..., Any]:
+        """Return the compiled pair potential that takes these parameters: `potential`, unless there are several."""
+        return self.potential
+
     @abstractmethod
     def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
         """Return what the potential needs of the two bodies.
@@ -35,6 +47,31 @@ class Gravity(Value, ABC):
         InputError
             Where the model cannot take these bodies.
         """
+
+    def next_terms(self, secondary: RigidBody, primary: RigidBody, x: Floats, r: Floats) -> Floats | None:
+        """Return the size of the next two terms of U that the model leaves out, over G m1 m2/r.
+
+        Parameters
+        ----------
+        secondary, primary : RigidBody
+            The pair.
+        x, r : ndarray
+            X (N, 3) [m] and R (N, 3, 3).
+
+        Returns
+        -------
+        ndarray or None
+            (N,); None of a model that is not cut at a degree, or where the moments are not known so far or not finite.
+        """
+        if self.cut_at is None:
+            return None
+        try:
+            parameters = _multipole_parameters(secondary, primary, self.cut_at + 2)
+        except InputError:
+            return None
+        with np.errstate(all="ignore"):
+            sizes = term_sizes(parameters, self.cut_at + 2, x, r)
+        return sizes if np.all(np.isfinite(sizes)) else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +121,89 @@ class SecondDegree(Gravity):
         """Return G m1 m2, G m2 J1 (3), G m1 J2 (3)."""
         one, two = secondary.si, primary.si
         return np.concatenate([[one.gm * two.mass], two.gm * one.moments, one.gm * two.moments])
+
+    @property
+    def cut_at(self) -> int:
+        """The degree at which it ends."""
+        return 2
+
+
+@dataclass(frozen=True, eq=False)
+class Multipole(Gravity):
+    """The mass moments of both bodies up to a total degree N: what remains falls off as (size/r)^(N + 1).
+
+    All terms are taken whose degrees in the two bodies add up to N or less. Degree 2 is that of `SecondDegree`. The sum
+    converges where spheres about the mass centres that hold the bodies do not meet; nearer it may, and a run says how
+    large its next terms are (`Trajectory.max_next_degree_term`).
+
+    Parameters
+    ----------
+    degree : int
+        N, from 2 to `LARGEST_DEGREE`, 16. Degree 1 vanishes, because bodies are about their mass centres.
+
+    Raises
+    ------
+    InputError
+        For another degree; from `System`, where a body's moments are not known up to it.
+
+    References
+    ----------
+    The sum over moments is that of solid harmonics, see ``kernels/mutual/multipole.py``; with inertia integrals it is
+    given by X. Hou, D. J. Scheeres, X. Xin, Celest. Mech. Dyn. Astron. 127 (2017) 369-395.
+
+    Examples
+    --------
+    >>> import astropy.units as u
+    >>> import binaryast as ba
+    >>> bodies = [ba.RigidBody(n, ba.Ellipsoid(5 * u.m, 4 * u.m, 3 * u.m), mass=1e6 * u.kg) for n in "AB"]
+    >>> for degree in (2, 4, 6, 8):
+    ...     print(ba.System(bodies, ba.Multipole(degree)).mutual_gravity([12, 0, 0] * u.m).energy.round(4))
+    -5.755 J
+    -5.773 J
+    -5.7754 J
+    -5.7759 J
+    """
+
+    degree: int
+
+    def __post_init__(self) -> None:
+        whole = isinstance(self.degree, (int, np.integer)) and not isinstance(self.degree, bool)
+        if not whole or not 2 <= self.degree <= LARGEST_DEGREE:
+            raise InputError(
+                f"Multipole: degree: expected a whole number from 2 to {LARGEST_DEGREE}, got {brief(self.degree)}"
+                + (": for point masses there is ba.PointMass()" if whole and 0 <= self.degree < 2 else "")
+            )
+        self._set(degree=int(self.degree))
+
+    @property
+    def potential(self) -> Callable[..., Any]:
+        """The compiled pair potential for all bodies."""
+        from binaryast.kernels.mutual.multipole_kernels import potential_of
+
+        return potential_of(self.degree, even=False)
+
+    def potential_for(self, parameters: Floats) -> Callable[..., Any]:
+        """Return the compiled pair potential for these bodies: a faster one, where odd moments vanish."""
+        from binaryast.kernels.mutual.multipole_kernels import kernel_for
+
+        return kernel_for(parameters, self.degree)
+
+    def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
+        """Return G m1 m2 and the moments of both bodies."""
+        return _multipole_parameters(secondary, primary, self.degree)
+
+    @property
+    def cut_at(self) -> int:
+        """The degree at which it ends."""
+        return self.degree
+
+
+def _multipole_parameters(secondary: RigidBody, primary: RigidBody, degree: int) -> Floats:
+    """Return what the multipole kernels need; infinite where sizes are beyond what can be computed with."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        return parameters_of(
+            secondary.si.gm * primary.si.mass, secondary.moments(degree), primary.moments(degree), degree
+        )
 
 
 @dataclass(frozen=True, eq=False)

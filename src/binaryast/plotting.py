@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from binaryast.analysis import libration_angle, mean_orbit_axes
+from binaryast.bodies import RigidBody
 from binaryast.errors import InputError
 from binaryast.storage import as_path, refuse, replace_whole
 from binaryast.trajectory import Trajectory, joined
@@ -108,15 +109,10 @@ def orbit(run: Trajectory, ax: Axes | None = None, *, frame: str = "inertial") -
     for i, body in enumerate(run.system.bodies):
         path = paths[:, i] @ plane.T / size
         ax.plot(*path.T, _style(path), color=_colour(i), lw=0.7, ms=1.5, alpha=0.7, label=_plain(body.name))
-        drawn = False
-        for centre, matrix in body.surface:
-            if not np.any(matrix):
-                continue
-            corners = _outline(plane @ attitudes[i] @ matrix @ attitudes[i].T @ plane.T)
-            middle = path[-1] + plane @ attitudes[i] @ centre / size
-            ax.add_patch(Polygon(middle + corners / size, fc=_colour(i), ec=DARK, lw=0.5, alpha=0.9, zorder=3))
-            drawn = True
-        if not drawn:
+        outlines = _outlines(body, plane @ attitudes[i])
+        for corners in outlines:
+            ax.add_patch(Polygon(path[-1] + corners / size, fc=_colour(i), ec=DARK, lw=0.5, alpha=0.9, zorder=3))
+        if not outlines:
             ax.plot(*path[-1], "o", color=_colour(i))
     ax.set(xlabel=f"x [{unit}]  ({place})", ylabel=f"y [{unit}]", title=subject, aspect="equal")
     ax.grid(alpha=0.25)
@@ -158,7 +154,20 @@ def _style(path: Floats) -> str:
     return "." if len(cosine) and np.median(cosine) < np.cos(0.15) and size.max() > 0 else "-"
 
 
-def _outline(matrix: Floats) -> Floats:
+def _outlines(body: RigidBody, view: Floats) -> list[Floats]:
+    """Return the outlines (k, 2) [m] of a body about its mass centre; ``view`` (2, 3) is from its frame onto a plane.
+
+    That of a surface of faces is the convex hull of its vertices, which is what is seen of it but for its hollows.
+    """
+    if body.corners is None:
+        return [view @ centre + _ellipse(view @ matrix @ view.T) for centre, matrix in body.surface if np.any(matrix)]
+    from scipy.spatial import ConvexHull
+
+    seen = body.corners @ view.T
+    return [seen[ConvexHull(seen).vertices]]
+
+
+def _ellipse(matrix: Floats) -> Floats:
     """Return the outline (k, 2) of an ellipsoid whose matrix, projected onto a plane, is ``matrix`` (2, 2)."""
     angle = np.linspace(0, 2 * np.pi, 90)
     return np.asarray((np.linalg.cholesky(matrix) @ np.array([np.cos(angle), np.sin(angle)])).T)

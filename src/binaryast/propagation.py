@@ -12,7 +12,7 @@ import numpy as np
 from astropy.units import Quantity
 
 from binaryast import constants
-from binaryast.errors import EndWarning, InputError, StepWarning
+from binaryast.errors import EndWarning, GravityWarning, InputError, StepWarning
 from binaryast.integrators import Integrator, RungeKutta, Stepping
 from binaryast.kernels import loop
 from binaryast.kernels.jit import source_hash
@@ -21,15 +21,17 @@ from binaryast.progress import bar
 from binaryast.schedule import schedule
 from binaryast.state import State
 from binaryast.stepping import SteppedRun, turn_error
-from binaryast.system import System
+from binaryast.system import Pair, System
 from binaryast.trajectory import Trajectory, TrajectoryFloats
-from binaryast.units import brief, quantity, to_si
+from binaryast.units import Floats, brief, quantity, to_si
 
 if TYPE_CHECKING:
     from binaryast.solving import SolvedRun
 
 DOUBTFUL_ENERGY_ERROR = 0.01
 DOUBTFUL_TURN = 2 * pi / 20  # rad in one step
+DOUBTFUL_TERM = 1e-3  # of gravity that is left out, over G m1 m2/r
+TERM_ROWS = 1000  # how many of the saved rows are looked at for it
 
 
 def propagate(
@@ -78,6 +80,8 @@ def propagate(
     StepWarning
         For a step above 1/20 of the fastest turn or of the time of an orbit, and where the energy was wrong by more
         than 1 % of its size.
+    GravityWarning
+        Where gravity is cut at a degree whose next terms reach more than 1e-3 of G m1 m2/r at a saved row.
     EndWarning
         Where the run ends early by itself.
 
@@ -185,6 +189,7 @@ def _trajectory(system: System, state: State, integrator: Integrator, outcome: O
             StepWarning,
             stacklevel=3,
         )
+    figures["max_next_degree_term"] = _next_degree_term(system, outcome)
     return Trajectory(
         system=system,
         integrator=integrator,
@@ -221,6 +226,40 @@ def _figures(system: System, outcome: Outcome) -> dict[str, Any]:
         "closest_approach": quantity(float(watch[loop.CLOSEST]), "m"),
         "closest_approach_time": quantity(outcome.closest_time, "s"),
     }
+
+
+def _next_degree_term(system: System, outcome: Outcome) -> float | None:
+    """Return the largest size of the terms that gravity leaves out, and warn of a doubtful one; None without a cut."""
+    sizes: list[tuple[float, Pair]] = []
+    for pair in system.pairs:
+        primary, secondary = system.bodies[pair.primary], system.bodies[pair.secondary]
+        terms = pair.gravity.next_terms(secondary, primary, *_configurations(outcome, pair))
+        if terms is not None:
+            sizes.append((float(terms.max(initial=0.0)), pair))
+    if not sizes:
+        return None
+    size, pair = max(sizes, key=lambda item: item[0])
+    if size > DOUBTFUL_TERM:
+        warnings.warn(
+            f"{pair.gravity!r} between {system.names[pair.primary]} and {system.names[pair.secondary]} leaves out "
+            f"terms up to {size:.2g} of G m1 m2/r, and more of the torques: take a higher degree of ba.Multipole",
+            GravityWarning,
+            stacklevel=4,
+        )
+    return size
+
+
+def _configurations(outcome: Outcome, pair: Pair) -> tuple[Floats, Floats]:
+    """Return X (N, 3) and R (N, 3, 3) of a pair, (34) and (35), at saved rows, that of its closest among them."""
+    one, two = pair.secondary, pair.primary
+    apart = outcome.motion.position[:, one] - outcome.motion.position[:, two]
+    distances = np.linalg.norm(apart, axis=1)
+    rows = np.unique(np.linspace(0, len(apart) - 1, min(len(apart), TERM_ROWS)).astype(int))
+    rows = np.append(rows, np.argmin(distances))
+    rows = rows[distances[rows] > 0]
+    to_primary = np.swapaxes(outcome.motion.attitude[rows, two], -1, -2)
+    x = np.einsum("nij,nj->ni", to_primary, apart[rows])
+    return x, to_primary @ outcome.motion.attitude[rows, one]
 
 
 def _over(error: float, size: float) -> float:

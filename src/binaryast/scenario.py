@@ -1,7 +1,10 @@
 """Scenario files: a system, its start and how to run it, as TOML with units in texts.
 
 The words are those of the Python interface: ``type`` names a class or a way to make a state, the other keys are its
-arguments. Only gravity by pairs and the orbits of several bodies have tables of their own::
+arguments. Only gravity by pairs and the orbits of several bodies have tables of their own. A surface of faces is read
+from a file, whose path counts from that of the scenario: ``{ type = "Polyhedron", file = "rock.obj", unit = "km" }``,
+with ``facets`` and ``mend`` as in `binaryast.Polyhedron.read`; and ``Layered`` has two shapes in it, ``outer = { .. }``
+and ``inner = { .. }``::
 
     [[bodies]]                                    # as many as there are, the primary first
     name = "A"
@@ -19,7 +22,8 @@ arguments. Only gravity by pairs and the orbits of several bodies have tables of
     mass = "12 kg"
 
     [gravity]                                     # of all pairs that are not named below
-    type = "SecondDegree"
+    type = "Multipole"
+    degree = 4
 
     [[gravity.pairs]]
     bodies = ["B", "craft"]
@@ -57,11 +61,13 @@ from typing import Any
 from astropy.time import Time
 from astropy.units import Quantity
 
-from binaryast import gravity, shapes
+from binaryast import coefficients, gravity, shapes, unions
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError, ScenarioError, StorageError, did_you_mean
 from binaryast.integrators import LGVI
+from binaryast.layered import Layered
 from binaryast.orbits import Orbit
+from binaryast.polyhedron import Polyhedron
 from binaryast.state import RelativeState, State
 from binaryast.storage import as_path
 from binaryast.system import OTHERS, System
@@ -69,12 +75,33 @@ from binaryast.units import brief, parse, quantity, to_si
 from binaryast.values import Value
 
 SHAPES = {
-    kind.__name__: kind for kind in (shapes.Ellipsoid, shapes.Sphere, shapes.Dumbbell, shapes.PointCloud, shapes.Point)
+    kind.__name__: kind
+    for kind in (
+        shapes.Ellipsoid,
+        shapes.Sphere,
+        shapes.Dumbbell,
+        shapes.PointCloud,
+        shapes.Point,
+        Polyhedron,
+        Layered,
+        unions.Union,
+        coefficients.InertiaIntegrals,
+        coefficients.StokesCoefficients,
+    )
 }
-GRAVITIES = {kind.__name__: kind for kind in (gravity.SecondDegree, gravity.PointPairs, gravity.PointMass)}
+GRAVITIES = {
+    kind.__name__: kind for kind in (gravity.SecondDegree, gravity.Multipole, gravity.PointPairs, gravity.PointMass)
+}
 STATES = ("circular_orbit", "from_elements", "from_orbits", "inertial", "relative")
-PLAIN = ("weights", "eccentricity", "about", "R", "R2", "attitude", "epoch", "frame")  # arguments that have no unit
+PLAIN = (  # arguments that have no unit
+    *("weights", "parts", "table", "C", "S", "normalised", "condon_shortley", "turn", "degree"),
+    *("density_ratio", "outer", "inner", "file", "facets", "unit", "mend"),
+    *("eccentricity", "about", "R", "R2", "attitude", "epoch", "frame"),
+)
 EXAMPLES = {  # what a text with a unit looks like
+    "mass": "2e9 kg",
+    "density": "2000 kg / m3",
+    "offset": "[60, 0, 0] m",
     "X": "[1, 0, 0] km",
     "velocity": "[[0, 0, 0], [0, 17, 0]] cm / s",
     "position": "[[0, 0, 0], [1, 0, 0]] km",
@@ -151,22 +178,25 @@ def load(path: str | Path) -> Scenario:
         raise StorageError(f"{path}: no such file") from None
     except (OSError, ValueError) as error:
         raise StorageError(f"{path}: cannot be read as text: {error}") from None
-    return loads(text, name=path.stem, where=str(path))
+    return loads(text, name=path.stem, where=str(path), folder=path.parent)
 
 
-def loads(text: str, *, name: str, where: str) -> Scenario:
-    """Return the scenario that a text says; ``where`` is what its errors begin with."""
+def loads(text: str, *, name: str, where: str, folder: Path = Path()) -> Scenario:
+    """Return the scenario that a text says.
+
+    ``where`` is what its errors begin with, ``folder`` where the paths in it count from.
+    """
     try:
         tables = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         raise ScenarioError(f"{where}: not TOML: {brief(error)}") from None
     try:
-        return _scenario(tables, name, text)
+        return _scenario(tables, name, text, folder)
     except InputError as error:
         raise ScenarioError(f"{where}: {error}") from None
 
 
-def _scenario(tables: dict[str, Any], name: str, text: str) -> Scenario:
+def _scenario(tables: dict[str, Any], name: str, text: str, folder: Path) -> Scenario:
     """Build everything that the tables say."""
     _known(tables, ("title", "bodies", "gravity", "state", "run", "sources"), "")
     _needed(tables, ("bodies", "state", "run"), "")
@@ -174,7 +204,7 @@ def _scenario(tables: dict[str, Any], name: str, text: str) -> Scenario:
     if not isinstance(bodies, list) or not all(isinstance(body, dict) for body in bodies):
         raise InputError("bodies: expected a table [[bodies]] for each body, the primary first")
     models = _gravity(_table(tables, "gravity"))
-    system = System([_body(body, f"bodies[{i}]") for i, body in enumerate(bodies)], models)
+    system = System([_body(body, f"bodies[{i}]", folder) for i, body in enumerate(bodies)], models)
     run = _table(tables, "run")
     _known(run, ("duration", "step", "save_every"), "run.")
     _needed(run, ("duration", "step"), "run.")
@@ -191,15 +221,51 @@ def _scenario(tables: dict[str, Any], name: str, text: str) -> Scenario:
     )
 
 
-def _body(table: dict[str, Any], where: str) -> RigidBody:
+def _body(table: dict[str, Any], where: str, folder: Path) -> RigidBody:
     """Return a body."""
     _known(table, ("name", "shape", "mass", "density", "gm", "inertia"), f"{where}.")
     _needed(table, ("name", "shape"), f"{where}.")
     units = {"mass": "kg", "density": "kg / m3", "gm": "m3 / s2", "inertia": "kg m2"}
     given = {key: _text(table[key], f"{where}.{key}", unit) for key, unit in units.items() if key in table}
-    shape = _typed(_table(table, "shape", f"{where}."), SHAPES, f"{where}.shape")
+    shape = _shape(_table(table, "shape", f"{where}."), f"{where}.shape", folder)
     quantities = {key: parse(text, f"{where}.{key}", f"1 {units[key]}") for key, text in given.items()}
     return RigidBody(table["name"], shape, **quantities)
+
+
+def _shape(table: dict[str, Any], where: str, folder: Path) -> Any:
+    """Return a shape, with the shapes inside it and what it needs from files."""
+    kind = _choice(table, SHAPES, where)
+    table = {
+        key: _shape(value, f"{where}.{key}", folder) if isinstance(value, dict) else value
+        for key, value in table.items()
+    }
+    if kind == "Union" and "parts" in table:
+        table["parts"] = _parts(table["parts"], f"{where}.parts", folder)
+    if kind != "Polyhedron":
+        return _typed(table, SHAPES, where)
+    arguments = {key: value for key, value in table.items() if key != "type"}
+    return _call(_polyhedron, {"folder": folder}, arguments, where)
+
+
+def _polyhedron(folder: Path, file: Any, unit: Any, facets: Any = None, mend: Any = False) -> Polyhedron:
+    """Return the polyhedron of a file."""
+    if not isinstance(mend, bool):
+        raise InputError(f"mend: expected true or false, got {brief(mend)}")
+    faces = None if facets is None else folder / _text(facets, "facets")
+    return Polyhedron.read(folder / _text(file, "file"), unit, facets=faces, mend=mend)
+
+
+def _parts(tables: Any, where: str, folder: Path) -> list[unions.Part]:
+    """Return the parts of a union."""
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise InputError(f"{where}: expected tables, each with a shape and a mass, got {brief(tables)}")
+    parts = []
+    for i, table in enumerate(tables):
+        _needed(table, ("shape",), f"{where}[{i}].")
+        shape = _shape(_table(table, "shape", f"{where}[{i}]."), f"{where}[{i}].shape", folder)
+        others = {key: value for key, value in table.items() if key != "shape"}
+        parts.append(_call(unions.Part, {"shape": shape}, others, f"{where}[{i}]"))
+    return parts
 
 
 def _gravity(table: dict[str, Any]) -> Any:

@@ -12,6 +12,7 @@ import numpy as np
 from astropy.units import Quantity
 
 from binaryast.errors import InputError
+from binaryast.kernels.moments import moved, of_ellipsoid, of_points
 from binaryast.units import Floats, as_quantity, checked, numbers, quantity, to_si
 from binaryast.values import Value
 
@@ -23,25 +24,59 @@ class Shape(Value, ABC):
     ----------
     volume : float or None
         Volume [m3]; None where there is none to speak of.
+    mass : float or None
+        Mass [kg], of a shape that has one of its own.
     centre : ndarray
         Mass centre (3,) [m].
     specific_inertia : ndarray
         Inertia matrix about the mass centre over the mass (3, 3) [m2].
+    trace_is_known : bool
+        Whether its trace is known too; where it is not, the matrix has none.
     points : tuple of ndarray or None
         Positions (k, 3) [m] and fractions of the mass (k,) of point masses with the same gravity, where there are some.
     pieces : list of tuple of ndarray
-        The surface as ellipsoids: centre (3,) and semi-axes (3,) [m] of each; empty for what never touches.
+        The surface as ellipsoids: centre (3,) and semi-axes [m] of each, along the axes of the shape's frame (3,) or as
+        the columns of a matrix (3, 3); empty for what never touches.
+    corners : ndarray or None
+        Vertices (k, 3) [m] of a surface of faces, None where there are none: its picture, and what a sphere must hold.
     """
 
     volume: float | None = None
+    mass: float | None = None
     points: tuple[Floats, Floats] | None = None
+    corners: Floats | None = None
     centre: Floats
     specific_inertia: Floats
+    trace_is_known: bool = True
 
     @property
     @abstractmethod
     def pieces(self) -> list[tuple[Floats, Floats]]:
         """The surface as ellipsoids."""
+
+    @abstractmethod
+    def moments(self, degree: int, origin: Floats, turn: Floats) -> Floats:
+        """Return the integrals of x^i y^j z^k dm over the mass, up to i + j + k = degree, in another frame.
+
+        Parameters
+        ----------
+        degree : int
+            The largest total degree.
+        origin : ndarray
+            Origin (3,) of that frame in the shape's [m].
+        turn : ndarray
+            Its axes in the shape's frame, as columns (3, 3): p' = turn^T (p - origin).
+
+        Returns
+        -------
+        ndarray
+            Flat, ordered by total degree, then by falling powers of x, then of y: 1, x, y, z, x^2, xy, xz, y^2, ..
+            [m^(i + j + k)].
+        """
+
+    def completed_inertia(self, given: Floats, mass: float, where: str) -> Floats:  # noqa: ARG002
+        """Return the inertia matrix (3, 3) [kg m2] that the user gave, as this shape takes it."""
+        return given
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +121,15 @@ class Ellipsoid(Shape):
     @property
     def pieces(self) -> list[tuple[Floats, Floats]]:
         """The surface as ellipsoids."""
-        return [(self.centre, np.array([self.a.value, self.b.value, self.c.value]))]
+        return [(self.centre, self._axes)]
+
+    def moments(self, degree: int, origin: Floats, turn: Floats) -> Floats:
+        """Return the specific moments in another frame, see `Shape.moments`: Dirichlet's integral."""
+        return moved(of_ellipsoid(self._axes, degree), degree, origin, turn)
+
+    @property
+    def _axes(self) -> Floats:
+        return np.array([self.a.value, self.b.value, self.c.value])
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +166,10 @@ class Sphere(Shape):
         """The surface as ellipsoids."""
         return [(self.centre, np.full(3, self.radius.value))]
 
+    def moments(self, degree: int, origin: Floats, turn: Floats) -> Floats:
+        """Return the specific moments in another frame, see `Shape.moments`."""
+        return moved(of_ellipsoid(np.full(3, self.radius.value), degree), degree, origin, turn)
+
 
 @dataclass(frozen=True, eq=False)
 class Point(Shape):
@@ -148,12 +195,17 @@ class Point(Shape):
         """The surface as ellipsoids: one without size."""
         return [(self.centre, np.zeros(3))]
 
+    def moments(self, degree: int, origin: Floats, turn: Floats) -> Floats:
+        """Return the specific moments in another frame, see `Shape.moments`."""
+        return of_points(-(origin @ turn)[None], np.ones(1), degree)
+
 
 @dataclass(frozen=True, eq=False)
 class Dumbbell(Shape):
     """Two equal homogeneous spheres on a massless rod along x: the body of section 5 of the paper.
 
-    Its surface is the two spheres; the rod stops nothing.
+    Its surface is the two spheres; the rod stops nothing. Its moments are those of the spheres; as spheres attract like
+    points, so does the pair of points at their centres.
 
     Parameters
     ----------
@@ -200,6 +252,11 @@ class Dumbbell(Shape):
         """The surface as ellipsoids."""
         half = self.length.value / 2
         return [(np.array([x, 0.0, 0.0]), np.full(3, self.radius.value)) for x in (half, -half)]
+
+    def moments(self, degree: int, origin: Floats, turn: Floats) -> Floats:
+        """Return the specific moments in another frame, see `Shape.moments`."""
+        sphere = of_ellipsoid(np.full(3, self.radius.value), degree)
+        return np.asarray(np.mean([moved(sphere, degree, origin - centre, turn) for centre, _ in self.pieces], axis=0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -254,3 +311,8 @@ class PointCloud(Shape):
     def pieces(self) -> list[tuple[Floats, Floats]]:
         """The surface as ellipsoids: none."""
         return []
+
+    def moments(self, degree: int, origin: Floats, turn: Floats) -> Floats:
+        """Return the specific moments in another frame, see `Shape.moments`: sums over the points."""
+        fractions = self.weights / self.weights.sum()
+        return of_points((self.positions.value - origin) @ turn, fractions, degree)

@@ -11,7 +11,8 @@ from astropy.units import Quantity
 from binaryast import orbits
 from binaryast.errors import InputError
 from binaryast.orbits import ZERO, Orbit, from_orbits, is_celestial
-from binaryast.system import System, rotation
+from binaryast.rotations import rotation
+from binaryast.system import System
 from binaryast.units import Floats, as_quantity, brief, quantity, to_si
 from binaryast.values import Value
 
@@ -136,7 +137,7 @@ class State(Value):
         >>> system, _ = ba.catalogue.load("didymos")
         >>> start = ba.State.circular_orbit(system, period=11.921473 * u.h, spins=[2.26 * u.h, "synchronous"])
         >>> print(start.separation.round(1))
-        1183.9 m
+        1184.2 m
         """
         _check_system(system, "circular_orbit")
         motion = orbits.circular_orbit(system, separation, period, pole, spins)

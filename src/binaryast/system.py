@@ -1,6 +1,6 @@
 """A system: bodies and how each pair of them attracts, checked once."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import combinations
 from typing import Any, NamedTuple
@@ -11,10 +11,10 @@ from astropy.units import Quantity
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError, did_you_mean
 from binaryast.gravity import Gravity, SecondDegree
-from binaryast.units import Floats, brief, numbers, quantity, to_si
+from binaryast.rotations import rotation
+from binaryast.units import Floats, brief, quantity, to_si
 from binaryast.values import Value
 
-ROTATION_TOLERANCE = 1e-9  # ||I - R^T R|| of an attitude that a user gives
 OTHERS = "others"  # in a table of gravities: the pairs that it does not name
 
 
@@ -25,6 +25,11 @@ class Pair(NamedTuple):
     secondary: int
     gravity: Gravity
     parameters: Floats
+
+    @property
+    def potential(self) -> Callable[..., Any]:
+        """The compiled pair potential that takes these parameters."""
+        return self.gravity.potential_for(self.parameters)
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +124,7 @@ class System(Value):
         for (i, j), model in zip(indices, models, strict=True):
             parameters = model.parameters(bodies[j], bodies[i])
             if not np.all(np.isfinite(parameters)):
-                raise InputError("System: the masses are beyond what can be computed with")
+                raise InputError("System: the masses or sizes are beyond what can be computed with")
             parameters.flags.writeable = False
             pairs.append(Pair(i, j, model, parameters))
         self._set(pairs=tuple(pairs))
@@ -202,7 +207,7 @@ class System(Value):
         """
         pair = pair or self._only_pair("attraction")
         try:
-            values: tuple[float, ...] = pair.gravity.potential(pair.parameters.copy(), *x, *r.ravel())
+            values: tuple[float, ...] = pair.potential(pair.parameters.copy(), *x, *r.ravel())
         except InputError:
             raise
         except Exception as error:  # whatever a user's function raises
@@ -284,23 +289,3 @@ def _models_by_names(table: Mapping[Any, Any], pairs: list[tuple[str, str]]) -> 
         if named.get(pair, named[OTHERS]) is None:
             raise InputError(f"System: gravity: nothing is said of {pair!r}: add it, or a model for 'others'")
     return [named.get(pair, named[OTHERS]) for pair in pairs]
-
-
-def rotation(value: Any, name: str, shape: tuple[int, ...]) -> Floats:
-    """Return rotation matrices of shape (*shape, 3, 3), from matrices or from a SciPy ``Rotation``; read-only.
-
-    Raises
-    ------
-    InputError
-        Where ||I - R^T R|| is above 1e-9 or a determinant is -1.
-    """
-    matrices = numbers(value.as_matrix() if hasattr(value, "as_matrix") else value, name, (*shape, 3, 3))
-    error = np.linalg.norm(np.eye(3) - np.swapaxes(matrices, -1, -2) @ matrices, axis=(-2, -1))
-    if np.any(error > ROTATION_TOLERANCE):
-        raise InputError(
-            f"{name}: not a rotation: ||I - R^T R|| is {np.max(error):.3g}, expected below {ROTATION_TOLERANCE:g}; "
-            "scipy.spatial.transform.Rotation.from_matrix(R) gives the nearest one"
-        )
-    if np.any(np.linalg.det(matrices) < 0):
-        raise InputError(f"{name}: a reflection, with determinant -1: expected a rotation; turn one axis round")
-    return matrices

@@ -16,8 +16,9 @@ from scipy.spatial.transform import Rotation
 from binaryast import storage
 from binaryast.errors import CheckError, InputError, StepWarning
 from binaryast.integrators import Integrator
+from binaryast.rotations import ROTATION_TOLERANCE
 from binaryast.state import RelativeState, State
-from binaryast.system import ROTATION_TOLERANCE, System
+from binaryast.system import System
 from binaryast.units import Floats, brief, checked, numbers, quantity, span
 from binaryast.values import Value
 
@@ -45,6 +46,7 @@ FIGURES = {  # of the whole run, over every step; with their units
     "max_rotation_error": "",
     "closest_approach": "m",
     "closest_approach_time": "s",
+    "max_next_degree_term": "",  # over saved rows; None of gravity that is not cut, and in older files
 }
 
 
@@ -86,6 +88,9 @@ class Trajectory(Value):
         and its figure is the round-off of the saved rows.
     closest_approach, closest_approach_time : Quantity
         Smallest distance of any two mass centres over every step, and when.
+    max_next_degree_term : float or None
+        Largest size, at saved rows, of the next two degrees of U that the gravity of a pair leaves out, over G m1 m2/r.
+        It is an estimate of what its cut costs; torques lose more, by (r/size)^2. None of gravity without a cut.
     integrator, system, epoch, frame, provenance
         What was run, and on what.
     si : TrajectoryFloats
@@ -110,6 +115,7 @@ class Trajectory(Value):
     max_rotation_error: float
     closest_approach: Quantity
     closest_approach_time: Quantity
+    max_next_degree_term: float | None
     provenance: dict[str, str] = field(repr=False)
 
     def __post_init__(self) -> None:
@@ -326,6 +332,8 @@ class Trajectory(Value):
             f"linear {self.max_relative_linear_momentum_error:.1e}, "
             f"rotation {self.max_rotation_error:.1e}",
         ]
+        if self.max_next_degree_term is not None:
+            lines.append(f"  next degrees of gravity: at most {self.max_next_degree_term:.1e} of G m1 m2/r")
         return "\n".join(lines)
 
     def _distances(self) -> list[str]:
@@ -413,8 +421,8 @@ class Trajectory(Value):
             "frame": self.frame,
             "wall_time": self.wall_time.value,
         }
-        for name in FIGURES:
-            attributes[name] = getattr(getattr(self, name), "value", getattr(self, name))
+        figures = {name: getattr(self, name) for name in FIGURES}
+        attributes |= {name: getattr(figure, "value", figure) for name, figure in figures.items() if figure is not None}
         values = {"system": self.system, "integrator": self.integrator, "epoch": self.epoch}
         return storage.write(
             storage.as_path(path), storage.Content(datasets, attributes, values, self.provenance), force=force
@@ -442,7 +450,7 @@ class Trajectory(Value):
         """
         path = storage.as_path(path)
         content = storage.read(path, verify=verify)
-        attributes = content.attributes
+        attributes = {"max_next_degree_term": None} | content.attributes
         try:
             return cls(
                 system=content.values["system"],

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from binaryast.errors import InputError, UnitError
 
 Floats: TypeAlias = NDArray[np.floating[Any]]
+Indices: TypeAlias = NDArray[np.int64]
 Sign = Literal["any", "positive", "non-negative"]
 LARGEST = 1e90  # in SI: three factors of it still are a number
 
@@ -185,6 +186,17 @@ def parse(text: str, name: str, example: str = "1 m") -> Quantity:
 def quantity(floats: Any, unit: str) -> Quantity:
     """Return floats in SI as a quantity, without a copy."""
     return np.asarray(floats) << u.Unit(unit)
+
+
+def as_unit(value: Any, unit: str, name: str) -> u.UnitBase:
+    """Return a unit of the same kind as ``unit``, from one or from its name; a number is an error."""
+    kind, example = KINDS[unit]
+    try:
+        if isinstance(value, (str, u.UnitBase)) and u.Unit(value).is_equivalent(u.Unit(unit)):
+            return u.Unit(value)
+    except (ValueError, TypeError):
+        pass
+    raise UnitError(f"{name}: expected the unit of {kind} such as u.{u_expression(example)}, got {brief(repr(value))}")
 
 
 def span(seconds: float) -> str:

@@ -41,6 +41,9 @@ def dumbbells() -> list[ba.RigidBody]:
 MODELS = {
     "PointMass": lambda: ba.System(ellipsoids(), gravity=ba.PointMass()),
     "SecondDegree": lambda: ba.System(ellipsoids(), gravity=ba.SecondDegree()),
+    "Multipole 4 ellipsoids": lambda: ba.System(ellipsoids(), gravity=ba.Multipole(4)),
+    "Multipole 3 clouds": lambda: ba.System(clouds(), gravity=ba.Multipole(3)),
+    "Multipole 8 clouds": lambda: ba.System(clouds(), gravity=ba.Multipole(8)),
     "PointPairs clouds": lambda: ba.System(clouds(), gravity=ba.PointPairs()),
     "PointPairs dumbbells": lambda: ba.System(dumbbells(), gravity=ba.PointPairs()),
     "PairPotential": lambda: ba.System(ellipsoids(), gravity=ba.PairPotential(repelled, [3e12, 4e15])),
@@ -90,7 +93,7 @@ def test_gradient_and_moment_are_derivatives_of_the_energy(system: ba.System) ->
             assert turn == pytest.approx(gravity.moment.value[i], abs=1e-10 * force * 1500)
 
 
-@pytest.mark.parametrize("name", ["SecondDegree", "PointPairs dumbbells"])
+@pytest.mark.parametrize("name", ["SecondDegree", "Multipole 4 ellipsoids", "PointPairs dumbbells"])
 @pytest.mark.parametrize("signs", [(1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
 def test_half_a_turn_about_a_principal_axis_changes_nothing(name: str, signs: tuple) -> None:
     """These bodies look the same after it: once the primary is turned, once the secondary."""

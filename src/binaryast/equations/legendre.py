@@ -40,7 +40,7 @@ class Inertial:
         self.m = np.array([body.si.mass for body in system.bodies])
         self.J = np.array([np.diag(body.si.moments) for body in system.bodies])
         self.rows: tuple[int, ...] = (len(self.m),)
-        self.potentials = table_of([pair.gravity.potential for pair in system.pairs])
+        self.potentials = table_of([pair.potential for pair in system.pairs])
         self.parameters = np.concatenate([pair.parameters for pair in system.pairs])
         ends = np.cumsum([len(pair.parameters) for pair in system.pairs])
         self.pairs = np.array(
@@ -117,7 +117,7 @@ class Relative:
         one, two = system.secondary.si, system.primary.si
         self.m1, self.m2, self.m = one.mass, two.mass, system.reduced_mass
         self.J1, self.J2 = np.diag(one.moments), np.diag(two.moments)
-        potentials = table_of([system.gravity.potential])
+        potentials = table_of([system.pairs[0].potential])
         self.arguments: tuple[Any, ...] = (potentials, system.parameters, self.m1, self.m2, self.J1, self.J2)
 
     def variables(self, at: Snapshot) -> Variables:

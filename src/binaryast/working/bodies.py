@@ -25,7 +25,7 @@ class WorkingBodies(Working):
         super().__init__(system, state)
         self.count = n = len(system.bodies)
         self.row_size, self.potential_at = layout.row_size_of(n), layout.potential_of(n)
-        self.attraction = table_of([pair.gravity.potential for pair in system.pairs])
+        self.attraction = table_of([pair.potential for pair in system.pairs])
         self.parameters = np.concatenate([pair.parameters for pair in system.pairs])
         self.constants = constants(system)
         self.state = np.zeros(layout.size_of(n))

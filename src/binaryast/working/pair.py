@@ -30,7 +30,7 @@ class WorkingPair(Working):
 
     def __init__(self, system: System, state: State) -> None:
         super().__init__(system, state)
-        self.attraction, self.parameters = system.gravity.potential, system.parameters
+        self.attraction, self.parameters = system.pairs[0].potential, system.parameters
         self.constants = np.empty(layout.CONSTANTS_SIZE)
         self.constants[layout.REDUCED_MASS] = system.reduced_mass
         self.state = np.zeros(layout.STATE_SIZE)

@@ -1,0 +1,126 @@
+"""Numbers that stand for instructions: a formula that Python runs on them is written out as straight-line code.
+
+With a `Symbol` in the place of a float, loops are unrolled, what is known becomes a constant, and what is multiplied by
+zero is left out. A symbol may also stand for two numbers side by side, on which the processor works at once. This is
+how ``mutual/multipole_kernels.py`` gets a kernel of each degree from one text of the mathematics, without files of
+generated source, and within a second: numba's own analysis, which takes longest, does not see the instructions.
+"""
+
+from typing import Any, TypeAlias
+
+from llvmlite import ir
+from numba.core import cgutils
+
+FLOAT = ir.DoubleType()
+PAIR = ir.VectorType(FLOAT, 2)
+FUSED = ("contract",)  # a product and a sum may be rounded once, where the processor can
+
+Number: TypeAlias = "Symbol | float"
+
+
+class Symbol:
+    """A number, or a pair of numbers, that is known only when the code runs."""
+
+    def __init__(self, builder: Any, value: Any) -> None:
+        self.builder, self.value = builder, value
+
+    def __add__(self, other: Number) -> Number:
+        return self if _is(other, 0) else self._result("fadd", self, other)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Number) -> Number:
+        return self if _is(other, 0) else self._result("fsub", self, other)
+
+    def __rsub__(self, other: Number) -> Number:
+        return -self if _is(other, 0) else self._result("fsub", other, self)
+
+    def __neg__(self) -> "Symbol":
+        return Symbol(self.builder, self.builder.fneg(self.value))
+
+    def __mul__(self, other: Number) -> Number:
+        if _is(other, 0):
+            return 0.0
+        if _is(other, 1):
+            return self
+        return -self if _is(other, -1) else self._result("fmul", self, other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Number) -> Number:
+        return self._result("fdiv", self, other)
+
+    def __rtruediv__(self, other: Number) -> Number:
+        return self._result("fdiv", other, self)
+
+    def _result(self, instruction: str, one: Number, two: Number) -> "Symbol":
+        """Return the result of an instruction; beside a pair, a single number counts twice."""
+        kind = PAIR if PAIR in (_kind(one), _kind(two)) else FLOAT
+        operands = (as_value(self.builder, number, kind) for number in (one, two))
+        return Symbol(self.builder, getattr(self.builder, instruction)(*operands, flags=FUSED))
+
+
+class SymbolLanes:
+    """What symbols offer besides arithmetic, see `binaryast.kernels.mutual.multipole.Lanes`."""
+
+    def __init__(self, builder: Any) -> None:
+        self.builder = builder
+
+    def sqrt(self, a: Any) -> Any:
+        """Return the square root, an instruction of the processor."""
+        kind = _kind(a)
+        name = "llvm.sqrt.f64" if kind is FLOAT else "llvm.sqrt.v2f64"
+        function = cgutils.get_or_insert_function(self.builder.module, ir.FunctionType(kind, [kind]), name)
+        return Symbol(self.builder, self.builder.call(function, [a.value]))
+
+    def pair(self, one: Any, two: Any) -> Any:
+        """Return two numbers side by side."""
+        value = ir.Constant(PAIR, ir.Undefined)
+        for lane, number in enumerate((one, two)):
+            value = self.builder.insert_element(value, as_value(self.builder, number, FLOAT), _integer(lane))
+        return Symbol(self.builder, value)
+
+    def first(self, pair: Any) -> Any:
+        """Return the first of a pair; a constant stands for both."""
+        return self._lane(pair, 0)
+
+    def second(self, pair: Any) -> Any:
+        """Return the second of a pair; a constant stands for both."""
+        return self._lane(pair, 1)
+
+    def _lane(self, pair: Any, lane: int) -> Any:
+        if not isinstance(pair, Symbol):
+            return pair
+        return Symbol(self.builder, self.builder.extract_element(pair.value, _integer(lane)))
+
+    def swapped(self, pair: Any) -> Any:
+        """Return a pair the other way round."""
+        if not isinstance(pair, Symbol):
+            return pair
+        order = ir.Constant(ir.VectorType(ir.IntType(32), 2), [_integer(1), _integer(0)])
+        return Symbol(self.builder, self.builder.shuffle_vector(pair.value, pair.value, order))
+
+    def where_larger(self, a: Any, b: Any, one: Any, two: Any) -> Any:
+        """Return ``one`` where a > b, ``two`` elsewhere."""
+        a, b, one, two = (as_value(self.builder, number, PAIR) for number in (a, b, one, two))
+        return Symbol(self.builder, self.builder.select(self.builder.fcmp_ordered(">", a, b), one, two))
+
+
+def as_value(builder: Any, number: Number, kind: Any) -> Any:
+    """Return a number as a value of LLVM's; twice, side by side, where a pair is wanted."""
+    if not isinstance(number, Symbol):
+        constant = ir.Constant(FLOAT, float(number))
+        return constant if kind is FLOAT else ir.Constant(PAIR, [constant, constant])
+    return number.value if _kind(number) is kind else SymbolLanes(builder).pair(number, number).value
+
+
+def _kind(number: Number) -> Any:
+    return PAIR if isinstance(number, Symbol) and number.value.type == PAIR else FLOAT
+
+
+def _is(number: Number, constant: float) -> bool:
+    return not isinstance(number, Symbol) and number == constant
+
+
+def _integer(value: int) -> Any:
+    return ir.Constant(ir.IntType(32), value)
