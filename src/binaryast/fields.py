@@ -38,6 +38,9 @@ class GravityField(Value):
     hessian: Quantity = field(repr=False)
     laplacian: Quantity = field(repr=False)
 
+    def __post_init__(self) -> None:
+        self._set(**self.arguments())  # read-only
+
 
 def polyhedron_field(body: RigidBody, points: Quantity, *, threads: int = 1) -> GravityField:
     """Return the gravity of a homogeneous polyhedron at points, exact everywhere: outside, inside and on the surface.

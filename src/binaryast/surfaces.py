@@ -56,6 +56,9 @@ class Surface(Value):
     effective_potential: Quantity = field(repr=False)
     escape_speed: Quantity = field(repr=False)
 
+    def __post_init__(self) -> None:
+        self._set(**self.arguments())  # read-only
+
     @property
     def gravity(self) -> Quantity:
         """Size of the effective acceleration (F,) [m / s2]."""
