@@ -219,3 +219,37 @@ def test_an_orbit_conserves_its_energy_and_is_kept_in_a_file(tmp_path: Path) -> 
     half = ba.propagate(system, state, duration=1 * u.day, integrator=ba.LGVI(10 * u.s))
     order = np.log2(run.max_energy_error.value / half.max_energy_error.value)
     assert order == pytest.approx(2, abs=0.1)
+
+
+def test_a_scenario_can_ask_for_it(tmp_path: Path) -> None:
+    vertices, faces = solids.box(-HALF, HALF)
+    lines = [f"v {x} {y} {z}" for x, y, z in vertices] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]
+    (tmp_path / "brick.obj").write_text("\n".join(lines))
+    (tmp_path / "mine.toml").write_text(
+        """
+        [[bodies]]
+        name = "rock"
+        shape = { type = "Polyhedron", file = "brick.obj", unit = "m" }
+        density = "2000 kg / m3"
+
+        [[bodies]]
+        name = "moon"
+        shape = { type = "Sphere", radius = "20 m" }
+        density = "2000 kg / m3"
+
+        [gravity]
+        type = "PolyhedronPoint"
+
+        [state]
+        type = "circular_orbit"
+        separation = "1 km"
+        spins = ["9 h", "synchronous"]
+
+        [run]
+        duration = "1 d"
+        step = "20 s"
+        """
+    )
+    system = ba.scenario.load(tmp_path / "mine.toml").system
+    assert isinstance(system.gravity, ba.PolyhedronPoint)
+    assert np.isfinite(system.mutual_gravity([1, 0, 0] * u.km).energy)

@@ -82,10 +82,10 @@ def contact_message(system: System, pair: int, after: float) -> str:
     return f"{secondary} touched {primary} in the step that ends at {after:g} s"
 
 
-def not_finite_message(system: System) -> str:
-    """Return what is said where a step has no finite result: also why a gravity of limits of its own may have none."""
+def not_finite_message(what: str, system: System) -> str:
+    """Return what is said where something is not a number: also why a gravity with limits of its own may be none."""
     limits = {pair.gravity.limits for pair in system.pairs} - {Gravity.limits}
-    return ": ".join(["positions, momenta or gravity are not numbers any more", *sorted(limits)])
+    return ": ".join([what, *sorted(limits)])
 
 
 def overlap(system: System, pair: int, position: Floats) -> ContactError:

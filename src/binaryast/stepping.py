@@ -160,7 +160,8 @@ class SteppedRun:
         if self.code >= status.CONTACT:
             return "contact", contact_message(self.system, self.code - status.CONTACT, self.elapsed)
         if self.code == status.NOT_FINITE:
-            reason = self.raised or not_finite_message(self.system)
+            what = "positions, momenta or gravity are not numbers any more"
+            reason = self.raised or not_finite_message(what, self.system)
             return "failed", f"{reason}; the last good row is at {self.elapsed:g} s"
         if self.code != status.COMPLETED:
             return "failed", str(self._turn_error())

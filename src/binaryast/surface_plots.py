@@ -112,7 +112,7 @@ def _draw(ax: Axes3D, found: Surface, colours: Floats, view: str) -> None:
     eye = _axis(view)
     seen = found.normals @ eye > 0
     ax.add_collection3d(
-        Poly3DCollection(vertices[found.faces[seen]], fc=colours[seen], ec=colours[seen], lw=0.15), autolim=False
+        Poly3DCollection(vertices[found.faces[seen]], fc=colours[seen], ec=colours[seen], lw=0.4), autolim=False
     )
     reach = float(np.abs(vertices).max())
     ax.set(xlim=(-reach, reach), ylim=(-reach, reach), zlim=(-reach, reach))

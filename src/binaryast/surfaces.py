@@ -108,12 +108,15 @@ def surface(system: System, state: State, body: str | int = 0, *, threads: int =
     term, Euler's, has dw/dt by the equations of rigid rotation with the torque of the system's gravity. It has no
     potential, so that it is in the acceleration and the slope only. The tide's potential is zero at the mass centre.
 
-    The escape speed is that of D. J. Scheeres et al., Icarus 121 (1996) 67, of the body alone, without the others: a
+    The escape speed is that of D. J. Scheeres et al., Icarus 121 (1996) 67 and Scheeres, Orbital Motion in Strongly
+    Perturbed Environments (Springer 2012), of the body alone, without the others: a
     grain leaves along the normal n and has the velocity v n + w x r, whose energy is to be that of rest far away,
 
         v = -n.(w x r) + sqrt((n.(w x r))^2 + 2 max(-U, GM/r) - |w x r|^2),
 
-    and 0 where a grain at rest on the face is faster than that. The slope is that of the same paper.
+    and 0 where a grain at rest on the face is faster than that. Gravity and slope are taken at the centre of a face,
+    which is not quite where a curved surface is parallel to it: for a mesh of such a surface the error of the slope
+    falls as the length of the edges.
 
     Examples
     --------
