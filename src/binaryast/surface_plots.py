@@ -87,12 +87,12 @@ def surface(
         figure = plt.figure()
     values = getattr(found, quantity)
     colours = ScalarMappable(Normalize(values.value.min(), values.value.max()), cmap)
-    figure.set_size_inches(3.6 * len(views) + 1.1, 4.0)
+    figure.set_size_inches(3.6 * len(views) + 1.3, 4.0)
     panels = [figure.add_subplot(1, len(views), i + 1, projection="3d", proj_type="ortho") for i in range(len(views))]
-    figure.subplots_adjust(left=0.0, right=1 - 1.0 / figure.get_figwidth(), bottom=0.02, top=0.82, wspace=0.0)
+    figure.subplots_adjust(left=0.0, right=1 - 1.2 / figure.get_figwidth(), bottom=0.02, top=0.82, wspace=0.0)
     for ax, view in zip(panels, views, strict=True):
         _draw(ax, found, colours.to_rgba(values.value), view)
-    bar = figure.add_axes((1 - 0.9 / figure.get_figwidth(), 0.14, 0.18 / figure.get_figwidth(), 0.64))
+    bar = figure.add_axes((1 - 1.1 / figure.get_figwidth(), 0.14, 0.18 / figure.get_figwidth(), 0.64))
     figure.colorbar(colours, cax=bar, label=f"{QUANTITIES[quantity]} [{values.unit}]")
     name = found.body.replace("$", r"\$")
     figure.suptitle(f"{name}: {QUANTITIES[quantity]}")
