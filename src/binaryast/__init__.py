@@ -13,15 +13,18 @@ if TYPE_CHECKING:
     from binaryast.bodies import RigidBody
     from binaryast.coefficients import InertiaIntegrals, StokesCoefficients
     from binaryast.errors import BinaryastError
+    from binaryast.fields import GravityField, polyhedron_field
     from binaryast.filling import mascons
     from binaryast.gravity import Multipole, PairPotential, PointMass, PointPairs, SecondDegree, pair_potential
     from binaryast.integrators import LGVI, RungeKutta
     from binaryast.layered import Layered
     from binaryast.orbits import Orbit
     from binaryast.polyhedron import Polyhedron
+    from binaryast.polyhedron_point import PolyhedronPoint
     from binaryast.propagation import propagate
     from binaryast.shapes import Dumbbell, Ellipsoid, Point, PointCloud, Shape, Sphere
     from binaryast.state import RelativeState, State
+    from binaryast.surfaces import Surface, surface
     from binaryast.system import MutualGravity, System
     from binaryast.trajectory import Trajectory
     from binaryast.unions import Part, Union
@@ -32,6 +35,7 @@ _HOMES = {
     "BinaryastError": "errors",
     "Dumbbell": "shapes",
     "Ellipsoid": "shapes",
+    "GravityField": "fields",
     "InertiaIntegrals": "coefficients",
     "LGVI": "integrators",
     "Layered": "layered",
@@ -45,6 +49,7 @@ _HOMES = {
     "PointMass": "gravity",
     "PointPairs": "gravity",
     "Polyhedron": "polyhedron",
+    "PolyhedronPoint": "polyhedron_point",
     "RelativeState": "state",
     "RigidBody": "bodies",
     "RungeKutta": "integrators",
@@ -53,12 +58,15 @@ _HOMES = {
     "Sphere": "shapes",
     "State": "state",
     "StokesCoefficients": "coefficients",
+    "Surface": "surfaces",
     "System": "system",
     "Trajectory": "trajectory",
     "Union": "unions",
     "mascons": "filling",
     "pair_potential": "gravity",
+    "polyhedron_field": "fields",
     "propagate": "propagation",
+    "surface": "surfaces",
 }
 _MODULES = ("analysis", "catalogue", "constants", "equations", "errors", "plotting", "scenario")
 
@@ -67,6 +75,7 @@ __all__ = [
     "BinaryastError",
     "Dumbbell",
     "Ellipsoid",
+    "GravityField",
     "InertiaIntegrals",
     "Layered",
     "Multipole",
@@ -79,6 +88,7 @@ __all__ = [
     "PointMass",
     "PointPairs",
     "Polyhedron",
+    "PolyhedronPoint",
     "RelativeState",
     "RigidBody",
     "RungeKutta",
@@ -87,6 +97,7 @@ __all__ = [
     "Sphere",
     "State",
     "StokesCoefficients",
+    "Surface",
     "System",
     "Trajectory",
     "Union",
@@ -99,8 +110,10 @@ __all__ = [
     "mascons",
     "pair_potential",
     "plotting",
+    "polyhedron_field",
     "propagate",
     "scenario",
+    "surface",
 ]
 
 

@@ -22,7 +22,15 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Gravity(Value, ABC):
-    """A model of the mutual gravity of a pair."""
+    """A model of the mutual gravity of a pair.
+
+    Attributes
+    ----------
+    limits : str
+        Why it may give something that is not a number.
+    """
+
+    limits: str = "too near, too far, or a wrong potential"
 
     @property
     @abstractmethod

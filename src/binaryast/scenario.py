@@ -68,6 +68,7 @@ from binaryast.integrators import LGVI
 from binaryast.layered import Layered
 from binaryast.orbits import Orbit
 from binaryast.polyhedron import Polyhedron
+from binaryast.polyhedron_point import PolyhedronPoint
 from binaryast.state import RelativeState, State
 from binaryast.storage import as_path
 from binaryast.system import OTHERS, System
@@ -90,7 +91,8 @@ SHAPES = {
     )
 }
 GRAVITIES = {
-    kind.__name__: kind for kind in (gravity.SecondDegree, gravity.Multipole, gravity.PointPairs, gravity.PointMass)
+    kind.__name__: kind
+    for kind in (gravity.SecondDegree, gravity.Multipole, gravity.PointPairs, gravity.PointMass, PolyhedronPoint)
 }
 STATES = ("circular_orbit", "from_elements", "from_orbits", "inertial", "relative")
 PLAIN = (  # arguments that have no unit

@@ -213,9 +213,7 @@ class System(Value):
         except Exception as error:  # whatever a user's function raises
             raise InputError(f"gravity: the potential raised {type(error).__name__}: {brief(error)}") from None
         if not np.all(np.isfinite(values)):
-            raise InputError(
-                f"gravity: at X = {brief(x)} m it is not a number: too near, too far, or a wrong potential"
-            )
+            raise InputError(f"gravity: at X = {brief(x)} m it is not a number: {pair.gravity.limits}")
         return values
 
     def mutual_gravity(self, position: Quantity, attitude: Any = None) -> MutualGravity:

@@ -6,6 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import binaryast as ba
+from tests import solids
 
 
 @ba.pair_potential
@@ -38,6 +39,17 @@ def dumbbells() -> list[ba.RigidBody]:
     ]
 
 
+def stone() -> ba.RigidBody:
+    """A box that is heavier at one end, so that it looks like itself from nowhere else."""
+    vertices, faces = solids.box((-300.0, -200.0, -150.0), (300.0, 200.0, 150.0))
+    vertices[4:, 1:] *= 0.6
+    return ba.RigidBody("A", ba.Polyhedron(vertices * u.m, faces), density=2400 * u.kg / u.m**3)
+
+
+def ball() -> ba.RigidBody:
+    return ba.RigidBody("B", ba.Sphere(100 * u.m), density=2000 * u.kg / u.m**3)
+
+
 MODELS = {
     "PointMass": lambda: ba.System(ellipsoids(), gravity=ba.PointMass()),
     "SecondDegree": lambda: ba.System(ellipsoids(), gravity=ba.SecondDegree()),
@@ -46,6 +58,8 @@ MODELS = {
     "Multipole 8 clouds": lambda: ba.System(clouds(), gravity=ba.Multipole(8)),
     "PointPairs clouds": lambda: ba.System(clouds(), gravity=ba.PointPairs()),
     "PointPairs dumbbells": lambda: ba.System(dumbbells(), gravity=ba.PointPairs()),
+    "PolyhedronPoint": lambda: ba.System([stone(), ball()], gravity=ba.PolyhedronPoint()),
+    "PolyhedronPoint, the point first": lambda: ba.System([ball(), stone()], gravity=ba.PolyhedronPoint()),
     "PairPotential": lambda: ba.System(ellipsoids(), gravity=ba.PairPotential(repelled, [3e12, 4e15])),
 }
 SWAPPABLE = [name for name in MODELS if name != "PairPotential"]
