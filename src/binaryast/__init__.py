@@ -10,12 +10,21 @@ from binaryast import constants as _constants
 
 if TYPE_CHECKING:
     from binaryast import analysis, catalogue, constants, equations, errors, plotting, scenario
+    from binaryast.adaptive import Adaptive
     from binaryast.bodies import RigidBody
     from binaryast.coefficients import InertiaIntegrals, StokesCoefficients
     from binaryast.errors import BinaryastError
     from binaryast.fields import GravityField, polyhedron_field
     from binaryast.filling import mascons
-    from binaryast.gravity import Multipole, PairPotential, PointMass, PointPairs, SecondDegree, pair_potential
+    from binaryast.gravity import (
+        EllipsoidPair,
+        Multipole,
+        PairPotential,
+        PointMass,
+        PointPairs,
+        SecondDegree,
+        pair_potential,
+    )
     from binaryast.integrators import LGVI, RungeKutta
     from binaryast.layered import Layered
     from binaryast.orbits import Orbit
@@ -32,9 +41,11 @@ if TYPE_CHECKING:
 __version__ = _constants.VERSION
 
 _HOMES = {
+    "Adaptive": "adaptive",
     "BinaryastError": "errors",
     "Dumbbell": "shapes",
     "Ellipsoid": "shapes",
+    "EllipsoidPair": "gravity",
     "GravityField": "fields",
     "InertiaIntegrals": "coefficients",
     "LGVI": "integrators",
@@ -72,9 +83,11 @@ _MODULES = ("analysis", "catalogue", "constants", "equations", "errors", "plotti
 
 __all__ = [
     "LGVI",
+    "Adaptive",
     "BinaryastError",
     "Dumbbell",
     "Ellipsoid",
+    "EllipsoidPair",
     "GravityField",
     "InertiaIntegrals",
     "Layered",

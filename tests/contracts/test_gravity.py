@@ -60,6 +60,10 @@ MODELS = {
     "PointPairs dumbbells": lambda: ba.System(dumbbells(), gravity=ba.PointPairs()),
     "PolyhedronPoint": lambda: ba.System([stone(), ball()], gravity=ba.PolyhedronPoint()),
     "PolyhedronPoint, the point first": lambda: ba.System([ball(), stone()], gravity=ba.PolyhedronPoint()),
+    "EllipsoidPair": lambda: ba.System(ellipsoids(), gravity=ba.EllipsoidPair()),
+    "EllipsoidPair reversed": lambda: ba.System(ellipsoids()[::-1], gravity=ba.EllipsoidPair()),
+    # the distance of the configurations lies in the interval, near neither end
+    "Adaptive": lambda: ba.System(ellipsoids(), gravity=ba.Adaptive(accuracy=3e-4, far=ba.SecondDegree())),
     "PairPotential": lambda: ba.System(ellipsoids(), gravity=ba.PairPotential(repelled, [3e12, 4e15])),
 }
 SWAPPABLE = [name for name in MODELS if name != "PairPotential"]
@@ -107,7 +111,7 @@ def test_gradient_and_moment_are_derivatives_of_the_energy(system: ba.System) ->
             assert turn == pytest.approx(gravity.moment.value[i], abs=1e-10 * force * 1500)
 
 
-@pytest.mark.parametrize("name", ["SecondDegree", "Multipole 4 ellipsoids", "PointPairs dumbbells"])
+@pytest.mark.parametrize("name", ["SecondDegree", "Multipole 4 ellipsoids", "EllipsoidPair", "PointPairs dumbbells"])
 @pytest.mark.parametrize("signs", [(1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
 def test_half_a_turn_about_a_principal_axis_changes_nothing(name: str, signs: tuple) -> None:
     """These bodies look the same after it: once the primary is turned, once the secondary."""
