@@ -126,7 +126,7 @@ def series_checks(errors: np.ndarray) -> list[Check]:
             f"tip to tip, far away: errors of U at degrees {DEGREES} fall with distance by the powers (4, 6, 8, 10)",
             float(np.abs(far - np.array(DEGREES) - 2).max()),
             0.05,
-            "degrees beyond the next add (size/r)^2 of its part",
+            "degrees beyond the next add (size/r)^2 of its part; at degree 8 rounding, 1e-2 of what is left",
             shown=", ".join(f"{power:.3f}" for power in far),
         )
     ]

@@ -11,29 +11,18 @@ NEAR = 0.01  # relative spread of the arguments at which the series, cut after d
 
 
 @jit()
-def series_of_rf(x: float, y: float, z: float) -> float:
-    """Return R_F(x, y, z) of arguments that are nearly equal, DLMF (19.36.1)."""
-    mean = (x + y + z) / 3.0
-    u, v = 1.0 - x / mean, 1.0 - y / mean
-    w = -u - v
-    e2, e3 = u * v - w * w, u * v * w
-    sums = 1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0
-    sums += -5.0 * e2 * e2 * e2 / 208.0 + 3.0 * e3 * e3 / 104.0 + e2 * e2 * e3 / 16.0
-    return sums / sqrt(mean)
-
-
-@jit()
 def series_of_rd(x: float, y: float, z: float) -> float:
     """Return R_D(x, y, z) of arguments that are nearly equal, DLMF (19.36.2)."""
-    mean = (x + y + 3.0 * z) / 5.0
-    u, v = 1.0 - x / mean, 1.0 - y / mean
-    w = -(u + v) / 3.0
+    mean = (x + y + 3.0 * z) * (1 / 5)
+    inverse = 1.0 / mean
+    u, v = 1.0 - x * inverse, 1.0 - y * inverse
+    w = -(u + v) * (1 / 3)
     uv, ww = u * v, w * w
     e2, e3, e4, e5 = uv - 6.0 * ww, (3.0 * uv - 8.0 * ww) * w, 3.0 * (uv - ww) * ww, uv * ww * w
-    sums = 1.0 - 3.0 * e2 / 14.0 + e3 / 6.0 + 9.0 * e2 * e2 / 88.0 - 3.0 * e4 / 22.0 - 9.0 * e2 * e3 / 52.0
-    sums += 3.0 * e5 / 26.0 - e2 * e2 * e2 / 16.0 + 3.0 * e3 * e3 / 40.0 + 3.0 * e2 * e4 / 20.0
-    sums += 45.0 * e2 * e2 * e3 / 272.0 - 9.0 * (e3 * e4 + e2 * e5) / 68.0
-    return sums / (mean * sqrt(mean))
+    sums = 1.0 - (3 / 14) * e2 + (1 / 6) * e3 + (9 / 88) * e2 * e2 - (3 / 22) * e4 - (9 / 52) * e2 * e3
+    sums += (3 / 26) * e5 - (1 / 16) * e2 * e2 * e2 + (3 / 40) * e3 * e3 + (3 / 20) * e2 * e4
+    sums += (45 / 272) * e2 * e2 * e3 - (9 / 68) * (e3 * e4 + e2 * e5)
+    return sums * inverse * sqrt(inverse)
 
 
 @jit()
@@ -42,6 +31,7 @@ def rf_and_rd(x: float, y: float, z: float) -> tuple[float, float, float, float]
 
     All three arguments are positive.
     """
+    x0, y0, z0 = x, y, z
     of_x = of_y = of_z = 0.0
     scale = 1.0
     while max(x, y, z) - min(x, y, z) > NEAR * min(x, y, z):
@@ -52,9 +42,7 @@ def rf_and_rd(x: float, y: float, z: float) -> tuple[float, float, float, float]
         of_z += scale / (c * (z + shift))
         scale *= 0.25
         x, y, z = 0.25 * (x + shift), 0.25 * (y + shift), 0.25 * (z + shift)
-    return (
-        series_of_rf(x, y, z),
-        scale * series_of_rd(y, z, x) + 3.0 * of_x,
-        scale * series_of_rd(z, x, y) + 3.0 * of_y,
-        scale * series_of_rd(x, y, z) + 3.0 * of_z,
-    )
+    rx = scale * series_of_rd(y, z, x) + 3.0 * of_x
+    ry = scale * series_of_rd(z, x, y) + 3.0 * of_y
+    rz = scale * series_of_rd(x, y, z) + 3.0 * of_z
+    return (x0 * rx + y0 * ry + z0 * rz) * (1 / 3), rx, ry, rz  # (19.21.9)

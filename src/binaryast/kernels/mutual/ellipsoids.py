@@ -9,41 +9,46 @@ from binaryast.kernels.carlson import rf_and_rd
 from binaryast.kernels.contact import separation_function, turned
 from binaryast.kernels.jit import PAIR_POTENTIAL, Array, Matrix, PairGravity, Vector, jit
 from binaryast.kernels.mutual.ellipsoid_parameters import DISC, FIELD, HEADER, NODE, NODES, RULE, RULES, SIDE
-from binaryast.kernels.so3 import cross, rotate, rotate_back
+from binaryast.kernels.so3 import cross, dot, rotate, rotate_back
 
 ENOUGH = 1e-9  # a Newton step that is smaller than this part leaves an error of its square
+STEPS = 60  # at most; some five from far, three from a neighbouring node
 LOOKS = 7  # at the function of Perram and Wertheim
 
 
 @jit()
-def confocal_coordinate(squares: Vector, x: Vector) -> float:
+def confocal_coordinate(squares: Vector, x: Vector, guess: float) -> float:
     """Return the largest root of x^2/(a^2 + q) + y^2/(b^2 + q) + z^2/(c^2 + q) = 1, zero for a point inside.
 
-    The inverse of the sum is concave in q and nearly linear: Newton's steps for it come from below, and need few.
+    The inverse of the sum is concave in q and nearly linear: Newton's steps for it need few, and from the first on they
+    come from below.
     """
-    a, b, c = squares
     x2, y2, z2 = x[0] * x[0], x[1] * x[1], x[2] * x[2]
-    q = max(0.0, x2 + y2 + z2 - max(a, b, c))
-    for _ in range(60):
-        i, j, k = 1.0 / (a + q), 1.0 / (b + q), 1.0 / (c + q)
+    q = guess
+    for _ in range(STEPS):
+        a, b, c = squares[0] + q, squares[1] + q, squares[2] + q
+        ab, bc, ca = a * b, b * c, c * a
+        inverse = 1.0 / (ab * c)
+        i, j, k = bc * inverse, ca * inverse, ab * inverse
         total = x2 * i + y2 * j + z2 * k
         slope = x2 * i * i + y2 * j * j + z2 * k * k
-        if total <= 1.0:
-            break
-        change = total * (total - 1.0) / slope
-        q += change
-        if change * max(i, j, k) < ENOUGH:
+        new = max(0.0, q + total * (total - 1.0) / slope)
+        change, q = abs(new - q), new
+        if change < ENOUGH * min(a, b, c):
             break
     return q
 
 
 @jit()
-def field(squares: Vector, x: Vector) -> tuple[float, Vector]:
-    """Return the potential of a homogeneous ellipsoid of unit G m, and its gradient (DLMF 19.33)."""
-    q = confocal_coordinate(squares, x)
+def field(squares: Vector, x: Vector, guess: float) -> tuple[float, Vector, float]:
+    """Return the potential of a homogeneous ellipsoid of unit G m, its gradient, and the confocal coordinate.
+
+    DLMF 19.33, from a guess of that coordinate.
+    """
+    q = confocal_coordinate(squares, x, guess)
     rf, rx, ry, rz = rf_and_rd(squares[0] + q, squares[1] + q, squares[2] + q)
     gx, gy, gz = x[0] * rx, x[1] * ry, x[2] * rz
-    return 0.5 * (x[0] * gx + x[1] * gy + x[2] * gz) - 1.5 * rf, (gx, gy, gz)
+    return 0.5 * (x[0] * gx + x[1] * gy + x[2] * gz) - 1.5 * rf, (gx, gy, gz), q
 
 
 @jit()
@@ -73,11 +78,12 @@ def summed(p: Array, x: Vector, r: Matrix) -> tuple[float, Vector, Vector]:
     squares = vector_at(p, FIELD)
     rule = rule_for(p, x, r)
     first, count = int(p[rule + 1]), int(p[rule + 2])
+    q = max(0.0, dot(x, x) - max(*squares))  # of a node, and the guess for the next
     u = gx = gy = gz = mx = my = mz = 0.0
     for i in range(count):
         at = first + NODE * i
         ax, ay, az = rotate(r, vector_at(p, at))  # R rho
-        phi, (fx, fy, fz) = field(squares, (x[0] + ax, x[1] + ay, x[2] + az))
+        phi, (fx, fy, fz), q = field(squares, (x[0] + ax, x[1] + ay, x[2] + az), q)
         w = p[at + 3]
         u += w * phi
         fx, fy, fz = w * fx, w * fy, w * fz
