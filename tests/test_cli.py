@@ -115,6 +115,23 @@ def test_list_and_show(capsys: pytest.CaptureFixture) -> None:
     out = capsys.readouterr().out
     assert "didymos_system_15.tpc" in out
     assert "separation 1184.1" in out
+    assert "mass centre" not in out
+
+
+def test_show_where_the_body_frame_is(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    text = ba.catalogue.text("didymos")
+    first = text.index("shape = {")
+    union = (
+        'shape = { type = "Union", parts = [{ shape = { type = "Ellipsoid", a = "400 m", b = "390 m", '
+        'c = "300 m" }, mass = "5e11 kg", offset = "[9, 0, -2] m", '
+        "turn = [[0.8, -0.6, 0], [0.6, 0.8, 0], [0, 0, 1]] }] }"
+    )
+    file = tmp_path / "turned.toml"
+    file.write_text(text[:first] + union + text[text.index("\n", first) :])
+    assert cli.main(["show", str(file)]) == 0
+    out = capsys.readouterr().out
+    assert "mass centre [9, 0, -2] m, axes turned by 36.8699 deg in the shape's frame" in out
+    assert out.count("mass centre") == 1
 
 
 WRONG = {

@@ -107,8 +107,12 @@ def test_kleopatra_filled() -> None:
         ({"shape": BENT, "count": 3}, "four or more"),
         ({"shape": BENT, "count": 10.0}, "a whole number of points"),
         ({"shape": BENT, "count": 10, "arrangement": "gird"}, "expected 'grid' or 'random'"),
+        ({"shape": BENT, "count": 10, "arrangement": ["grid"]}, "expected 'grid' or 'random'"),
         ({"shape": BENT, "count": 10, "seed": -1}, "seed=-1"),
-        ({"shape": ba.Ellipsoid(9 * u.m, 9 * u.m, 0.01 * u.m), "count": 4}, "expected a larger count"),
+        (
+            {"shape": ba.Ellipsoid(9 * u.m, 9 * u.m, 0.01 * u.m), "count": 4},
+            "expected a larger count, or arrangement='random'",
+        ),
     ],
 )
 def test_one_line_for_each_mistake(arguments: dict, says: str) -> None:

@@ -54,6 +54,12 @@ FILES: dict[str, str | bytes] = {
     "plain.obj": "\n".join(["# a box", "o box", *lines(VERTICES, BOX_FACES, 1, "v", "f")]) + "\n",
     "textured.obj": "\n".join([*VERTEX_LINES, "vt 0 0", "vt 1 1", "vn 0 0 1", *TEXTURED]),
     "backwards.obj": "\n".join([*VERTEX_LINES, *(f"f {a - 8} {b - 8} {c - 8}" for a, b, c in BOX_FACES)]),
+    "comments.obj": "\n".join(
+        [
+            *(f"{line} # so" for line in VERTEX_LINES),
+            *(f"f {a + 1} {b + 1} \\\n {c + 1}  # it" for a, b, c in BOX_FACES),
+        ]
+    ),
     "squares.obj": "\n".join([*VERTEX_LINES, *SQUARES]),
     "box.ply": ply(VERTICES, BOX_FACES),
     "box.stl": stl(VERTICES, BOX_FACES),
@@ -61,6 +67,7 @@ FILES: dict[str, str | bytes] = {
     "vertex_facet_1.tab": "\n".join(lines(VERTICES, BOX_FACES, 1, "v", "f")),
     "plates_0.tab": "\n".join([SIZES, *ROWS[0]]),
     "plates_1.TAB": "\n".join([SIZES, *ROWS[1]]).replace("0.5", "5.0D-01"),
+    "commas.tab": "\n".join([SIZES, *ROWS[1]]).strip().replace("\n ", "\n").replace(" ", ", "),
     "numbered.tab": "\n".join([SIZES, *NUMBERED]),
     "numbers_before_each.tab": "\n".join(["8", *NUMBERED[:8], "12", *NUMBERED[8:]]),
 }
@@ -90,6 +97,9 @@ def test_a_pair_of_csv_files(tmp_path: Path) -> None:
     np.testing.assert_array_equal(shape.faces, BOX_FACES)
     with pytest.raises(MeshError, match="facets="):
         ba.Polyhedron.read(one, u.m)
+    one.write_text("number, x, y, z\n" + one.read_text())
+    two.write_text("v1,v2,v3,,\n" + two.read_text())
+    np.testing.assert_array_equal(ba.Polyhedron.read(one, u.m, facets=two).vertices.value, VERTICES)
 
 
 @pytest.mark.parametrize(
@@ -105,6 +115,7 @@ def test_a_pair_of_csv_files(tmp_path: Path) -> None:
         ("a.obj", "v 0 0 0\nf 0 1 2\n", "vertex 0: expected numbers from 1"),
         ("a.obj", "v 0 0 0\nf 1 2 3\nf 1 2 3\nf 1 2 3\nf 1 2 3", "there is no vertex 2: the 1 vertices"),
         ("a.ply", "ply\n", "not a readable .ply file"),
+        ("a.ply", ply(VERTICES, NO_FACES), "it has no faces: a cloud of points"),
         ("a.stl", "solid", "a.stl: "),
         ("a.tab", "-90 0 1\n-90 5 1\n", "neither of the two layouts"),
         ("a.tab", "", "neither of the two layouts"),
@@ -121,6 +132,16 @@ def test_one_line_for_each_broken_file(name: str, text: str, says: str, tmp_path
     with pytest.raises(InputError) as caught:
         ba.Polyhedron.read(path, unit=u.km)
     assert says in str(caught.value)
+    assert str(caught.value).startswith(str(path))
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("length", [60, 90, 300])
+def test_a_binary_file_that_was_cut_off(length: int, tmp_path: Path) -> None:
+    path = tmp_path / "a.stl"
+    path.write_bytes(stl(VERTICES, BOX_FACES)[:length])
+    with pytest.raises(MeshError, match=r"ends too early|cut off") as caught:
+        ba.Polyhedron.read(path, unit=u.km)
     assert str(caught.value).startswith(str(path))
     assert "\n" not in str(caught.value)
 

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from scipy.special import lpmv
 
 import binaryast as ba
-from binaryast.errors import InputError, ScenarioError
+from binaryast.errors import DensityWarning, InputError, ScenarioError
 from binaryast.kernels import moments as monomials
 from binaryast.kernels.harmonics import harmonic_moments
 from binaryast.scenario import loads
@@ -145,12 +145,54 @@ def test_a_union_of_meshes() -> None:
     assert mixed.corners is None
 
 
+def test_what_takes_mass_away_has_no_surface() -> None:
+    vertices, faces = box()
+    stone = ba.Polyhedron(vertices * u.m, faces)
+    parts = [
+        ba.Part(stone, density=ROCK),
+        ba.Part(stone, density=ROCK, offset=[1, 0, 0] * u.m),
+        ba.Part(ba.Sphere(0.3 * u.m), density=-ROCK, offset=[1, 1, 1] * u.m),
+    ]
+    union = ba.Union(parts)
+    assert len(union.pieces) == 2
+    assert len(union.corners) == 16
+    assert union.mass == pytest.approx(2000 * (2 - 4 / 3 * np.pi * 0.3**3))
+
+
+def test_the_density_of_a_part() -> None:
+    vertices, faces = box()
+    stone = ba.Polyhedron(vertices * u.m, faces)
+    with pytest.warns(DensityWarning, match=r"Part: 2e\+07 kg in this mesh's volume make 2e\+07 kg/m3") as caught:
+        ba.Part(stone, mass=2e7 * u.kg)
+    assert caught[0].filename == __file__
+    with pytest.warns(DensityWarning, match="RigidBody B: 0.002 kg in this mesh") as caught:
+        ba.RigidBody("B", stone, mass=0.002 * u.kg)
+    assert caught[0].filename == __file__
+    ba.Part(stone, mass=2000 * u.kg)
+    ba.Part(stone, mass=-1 * u.kg)
+
+
+def test_short_names() -> None:
+    shapes = [SHAPES["union"], SHAPES["cloud"], ba.InertiaIntegrals(integrals(), 1 * u.m), stokes()]
+    names = ["Union(3 parts)", "PointCloud(6 points)", "InertiaIntegrals(degree 2)", "StokesCoefficients(degree 2)"]
+    assert [repr(shape) for shape in shapes] == names
+    assert repr(ba.Union([ba.Part(ba.Sphere(1 * u.m), mass=1 * u.kg)])) == "Union(1 part)"
+    assert stokes(normalised=np.False_).normalised is False
+
+
+def test_many_points_are_summed_in_parts() -> None:
+    random = np.random.default_rng(4)
+    points, fractions = random.normal(size=(10000, 3)), np.full(10000, 1e-4)
+    expected = [np.prod(points**powers, axis=1) @ fractions for powers in monomials.exponents(3)]
+    np.testing.assert_allclose(monomials.of_points(points, fractions, 3), expected, rtol=1e-12, atol=1e-15)
+
+
 @pytest.mark.parametrize(
     ("make", "says"),
     [
         (lambda: ba.Part(ba.Sphere(1 * u.m)), "give one of mass= and density="),
         (lambda: ba.Part(ba.Sphere(1 * u.m), mass=1 * u.kg, density=ROCK), "give one of"),
-        (lambda: ba.Part(ba.Point(), density=ROCK), "a Point has no volume"),
+        (lambda: ba.Part(ba.Point(), density=ROCK), "Point has no volume"),
         (lambda: ba.Part(ba.Sphere(1 * u.m), mass=0 * u.kg), "its mass is zero"),
         (lambda: ba.Part("sphere", mass=1 * u.kg), "expected a shape"),
         (lambda: ba.Part(ba.Sphere(1 * u.m), mass=1 * u.kg, turn=2 * np.eye(3)), "not a rotation"),
@@ -159,7 +201,7 @@ def test_a_union_of_meshes() -> None:
         (lambda: ba.Union([]), r"expected a list of ba.Part"),
         (lambda: ba.Union(ba.Sphere(1 * u.m)), r"expected a list of ba.Part"),
         (lambda: ba.Union([ba.Part(ba.Sphere(1 * u.m), mass=-1 * u.kg)]), "add up to -1 kg"),
-        (lambda: ba.RigidBody("U", SHAPES["union"], density=ROCK), "a Union has no volume"),
+        (lambda: ba.RigidBody("U", SHAPES["union"], density=ROCK), "Union has no volume"),
         (lambda: ba.InertiaIntegrals(np.ones((2, 2, 2)), 1 * u.m), "expected shape"),
         (lambda: ba.InertiaIntegrals([[1, 2], [3]], 1 * u.m), "expected shape"),
         (lambda: ba.InertiaIntegrals(np.full((3, 3, 3), np.nan), 1 * u.m), "finite"),
@@ -172,7 +214,30 @@ def test_a_union_of_meshes() -> None:
         (lambda: ba.RigidBody("S", stokes(), mass=1 * u.kg), "inertia: coefficients of degree 2 do not fix its trace"),
         (
             lambda: ba.RigidBody("S", stokes(), mass=1 * u.kg, inertia=[4200, 3800, 4500] * u.kg * u.m**2),
-            "does not agree with the coefficients of degree 2",
+            "does not agree with the coefficients of degree 2, .* xx 3800, xy 0, .* zz 4500 kg m2, got xx 4200, xy",
+        ),
+        (
+            lambda: ba.RigidBody("S", turned_field(), mass=1 * u.kg, inertia=[3800, 4200, 4500] * u.kg * u.m**2),
+            "three moments are about the shape's axes: give the matrix",
+        ),
+        (
+            lambda: ba.RigidBody(
+                "U",
+                ba.Union([ba.Part(ba.Sphere(1 * u.m), mass=9 * u.kg), ba.Part(ba.Sphere(9 * u.m), mass=-1 * u.kg)]),
+            ),
+            "must all be positive: its negative parts take away more than there is",
+        ),
+        (
+            lambda: ba.RigidBody("S", ba.Sphere(1 * u.m), mass=1 * u.kg).moments(-1),
+            "RigidBody S: moments: degree: .*-1",
+        ),
+        (
+            lambda: ba.RigidBody("S", ba.Sphere(1 * u.m), mass=1 * u.kg).moments(2.0),
+            "a whole number, 0 or more, got 2.0",
+        ),
+        (
+            lambda: ba.RigidBody("I", ba.InertiaIntegrals(integrals(), 1 * u.m), mass=1 * u.kg).moments(3),
+            "RigidBody I: InertiaIntegrals: moments of degree 3 are asked for",
         ),
     ],
 )
@@ -188,6 +253,13 @@ C = np.array([[1, 0, 0], [0, 0, 0], [-0.05, 0, 0.01]])
 def stokes(**change: object) -> ba.StokesCoefficients:
     arguments = {"C": C, "S": np.zeros((3, 3)), "reference_radius": 100 * u.m, "normalised": False}
     return ba.StokesCoefficients(**arguments | change)
+
+
+def turned_field() -> ba.StokesCoefficients:
+    """Return a field whose principal axes are turned about z."""
+    s = np.zeros((3, 3))
+    s[2, 2] = 0.004
+    return stokes(S=s)
 
 
 def ellipsoid_coefficients(a: float, b: float, c: float, radius: float) -> np.ndarray:

@@ -162,6 +162,7 @@ def test_the_size_of_what_gravity_leaves_out() -> None:
         large = run.max_next_degree_term is not None and run.max_next_degree_term > 1e-3
         assert len(told) == large
         assert all("between A and B leaves out terms up to" in text for text in told)
+        assert all(text.endswith("take a higher degree of ba.Multipole") for text in told)
         assert ("next degrees of gravity" in run.summary()) == (run.max_next_degree_term is not None)
     assert figures["PointMass()"] is None
     assert figures["SecondDegree()"] == figures["Multipole(degree=2)"]
@@ -169,6 +170,38 @@ def test_the_size_of_what_gravity_leaves_out() -> None:
     for degree, step in zip((2, 4, 6), np.diff(pair), strict=True):
         size = abs(step / pair[0])  # at the start, where they are nearly as close as they come
         assert figures[f"Multipole(degree={degree})"] == pytest.approx(size, rel=0.05)
+
+
+def test_what_helps_where_gravity_leaves_out_too_much() -> None:
+    """A higher degree, where there is one and where the series converges."""
+    zero = np.zeros((2, 3))
+    for distance, gravity, says in (
+        (
+            500,
+            ba.Multipole(4),
+            "at 500 m spheres that hold the bodies meet, a higher degree need not be better: take ba.P",
+        ),
+        (610, ba.Multipole(16), "there is no higher degree: take ba.PointPairs"),
+    ):
+        random = np.random.default_rng(1)
+        points = np.concatenate([random.normal(size=(20, 3)) * 20, [[-299, 0, 0], [299, 0, 0]]])
+        shape = ba.Ellipsoid(300 * u.m, 20 * u.m, 20 * u.m) if distance < 600 else ba.PointCloud(points * u.m)
+        bodies = [ba.RigidBody(n, shape, mass=1e10 * u.kg) for n in "AB"]
+        place = [[0, 0, 0], [distance, 0, 0]] if distance > 600 else [[0, 0, 0], [0, distance, 0]]
+        state = ba.State(place * u.m, zero * u.m / u.s, [np.eye(3)] * 2, zero * u.rad / u.s)
+        with pytest.warns(GravityWarning, match=says):
+            ba.propagate(ba.System(bodies, gravity), state, duration=1 * u.s, integrator=ba.LGVI(1 * u.s))
+
+
+def test_where_the_next_degree_is_not_known() -> None:
+    table = np.zeros((3, 3, 3))
+    table[0, 0, 0], table[2, 0, 0], table[0, 2, 0], table[0, 0, 2] = 10, 50, 32, 18
+    bodies = [ba.RigidBody(n, ba.InertiaIntegrals(table, 1 * u.m), mass=1e6 * u.kg) for n in "AB"]
+    system = ba.System(bodies, ba.Multipole(2))
+    state = ba.State.circular_orbit(system, separation=50 * u.m, spins=["synchronous", "synchronous"])
+    run = ba.propagate(system, state, duration=10 * u.s, integrator=ba.LGVI(1 * u.s))
+    assert run.max_next_degree_term is None
+    assert "next degrees of gravity: not known" in run.summary()
 
 
 def test_a_pass_within_one_step_is_a_contact_all_the_same() -> None:

@@ -113,7 +113,7 @@ def test_a_file_of_before_gravity_had_degrees(run: ba.Trajectory, tmp_path: Path
         del file.attrs["max_next_degree_term"]
     again = ba.Trajectory.read(path, verify=False)
     assert again.max_next_degree_term is None
-    assert "next degrees" not in again.summary()
+    assert "next degrees of gravity: not known" in again.summary()
 
 
 def test_a_run_goes_on_from_a_file(run: ba.Trajectory, tmp_path: Path) -> None:

@@ -97,6 +97,18 @@ MISTAKES = {
         "(squares.sum() - squares) / 5",
         "(squares.sum() - squares) / 4",
     ),
+    "multipole-sign": Mistake(
+        "a sign in the force across X, multipoles",
+        f"{POTENTIALS}/multipole.py",
+        "slope * (second(sums.ty) - first(sums.ty))",
+        "slope * (second(sums.ty) + first(sums.ty))",
+    ),
+    "moments-of-ellipsoid": Mistake(
+        "4 for 3 in an ellipsoid's moments from degree 4 on",
+        "kernels/moments.py",
+        "ways = 3 * prod(",
+        "ways = 4 * prod(",
+    ),
 }  # fmt: skip
 
 

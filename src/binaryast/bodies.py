@@ -1,6 +1,5 @@
 """Rigid bodies: a shape with mass, brought to its mass centre and principal axes."""
 
-import warnings
 from copy import deepcopy
 from dataclasses import dataclass, field
 from itertools import permutations, product
@@ -11,14 +10,13 @@ import numpy as np
 from astropy.units import Quantity
 
 from binaryast.constants import G
-from binaryast.errors import DensityWarning, InputError
+from binaryast.errors import InputError
 from binaryast.kernels.moments import from_inertia
-from binaryast.shapes import Point, Shape
+from binaryast.shapes import Point, Shape, look_at_density
 from binaryast.units import LARGEST, Floats, as_quantity, brief, quantity, to_si
 from binaryast.values import Value
 
 LONGEST_NAME = 64
-DENSITIES = (100.0, 20000.0)  # kg / m3: what small bodies are made of lies between
 EQUAL_MOMENTS = 1e-12  # relative difference below which two principal axes may be chosen freely
 
 
@@ -131,8 +129,8 @@ class RigidBody(Value):
             offset=quantity(shape.centre, "m"),
             si=BodyFloats(mass_si, gm_si, moments),
         )
-        if shape.corners is not None and density is None:
-            self._look_at_the_density()
+        if density is None:
+            look_at_density(shape, mass_si, f"RigidBody {name}", stacklevel=3)
 
     @property
     def is_point(self) -> bool:
@@ -153,9 +151,7 @@ class RigidBody(Value):
             return value / G, value
         if density is not None:
             if self.shape.volume is None:
-                raise InputError(
-                    f"{where}: a {type(self.shape).__name__} has no volume: give mass= or gm=, not density="
-                )
+                raise InputError(f"{where}: {type(self.shape).__name__} has no volume: give mass= or gm=, not density=")
             value = float(to_si(density, "kg / m3", f"{where}: density", sign="positive")) * self.shape.volume
         elif mass is None and self.shape.mass is not None:
             value = self.shape.mass
@@ -186,10 +182,10 @@ class RigidBody(Value):
         shown = ", ".join(f"{moment:.6g}" for moment in moments)
         largest = moments.max()
         if moments.min() <= 1e-12 * largest:
-            raise InputError(
-                f"{where}: principal moments {shown} kg m2 must all be positive: a point or a line of points has none "
-                "about itself; give inertia=, or the shape ba.Point()"
-            )
+            cause = "a point or a line of points has none about itself; give inertia=, or the shape ba.Point()"
+            if self.shape.mass is not None and moments.min() < -1e-12 * abs(largest):  # a union
+                cause = "its negative parts take away more than there is"
+            raise InputError(f"{where}: principal moments {shown} kg m2 must all be positive: {cause}")
         if 2 * largest > moments.sum() * (1 + 1e-9):
             raise InputError(
                 f"{where}: principal moments {shown} kg m2 break the triangle inequality: "
@@ -200,7 +196,13 @@ class RigidBody(Value):
         """Return the integrals of x^i y^j z^k dm over the mass, up to i + j + k = degree, in the body frame.
 
         Those of first degree are zero, for the origin is the mass centre. Those of second degree are what the principal
-        moments of inertia say, so they follow an ``inertia`` that was given.
+        moments of inertia say, so they follow an ``inertia`` that was given. Of `StokesCoefficients`, those from degree
+        3 on stand for the field only: a field does not say the moments themselves.
+
+        Parameters
+        ----------
+        degree : int
+            The largest total degree, 0 or more.
 
         Returns
         -------
@@ -211,7 +213,7 @@ class RigidBody(Value):
         Raises
         ------
         InputError
-            Where the shape's moments are not known up to this degree.
+            For another degree, or where the shape's moments are not known up to it.
 
         Examples
         --------
@@ -221,25 +223,18 @@ class RigidBody(Value):
         >>> print(body.moments(2))
         [1.  0.  0.  0.  5.  0.  0.  3.2 0.  1.8]
         """
-        result = self.shape.moments(degree, self.shape.centre, self.turn).copy()
+        if isinstance(degree, bool) or not isinstance(degree, (int, np.integer)) or degree < 0:
+            raise InputError(
+                f"RigidBody {self.name}: moments: degree: expected a whole number, 0 or more, got {brief(degree)}"
+            )
+        try:
+            result = self.shape.moments(int(degree), self.shape.centre, self.turn).copy()
+        except InputError as error:
+            raise InputError(f"RigidBody {self.name}: {error}") from None
         result[1:4] = 0.0
         if degree >= 2:
             result[4:10] = from_inertia(np.diag(self.si.moments / self.si.mass))[np.triu_indices(3)]
         return result
-
-    def _look_at_the_density(self) -> None:
-        """Warn where the length unit of a mesh cannot be right for the mass given."""
-        lowest, highest = DENSITIES
-        if self.density is None or lowest <= self.density.value <= highest:
-            return
-        factor = np.cbrt(self.density.value / 2000)
-        change = f"{factor:.3g} times longer" if factor > 1 else f"{1 / factor:.3g} times shorter"
-        warnings.warn(
-            f"RigidBody {self.name}: {self.mass.value:g} kg in this mesh's volume make {self.density.value:.3g} kg/m3, "
-            f"expected {lowest:g} to {highest:g}: is its unit right? Lengths {change} would make 2000 kg/m3",
-            DensityWarning,
-            stacklevel=3,
-        )
 
     @property
     def points(self) -> tuple[Floats, Floats] | None:

@@ -20,6 +20,7 @@ from binaryast.constants import VERSION
 from binaryast.errors import BinaryastError, InputError
 
 if TYPE_CHECKING:
+    from binaryast.bodies import RigidBody
     from binaryast.gravity import Gravity
     from binaryast.integrators import Integrator
     from binaryast.scenario import Scenario
@@ -192,6 +193,8 @@ def _show(options: argparse.Namespace) -> int:
         density = "" if body.density is None else f", {body.density.value:.5g} kg/m3"
         print(f"  {body.name} ({role}): {body.shape!r}".replace("<Quantity ", "").replace(">", ""))
         print(f"    {body.si.mass:.6g} kg, GM {body.si.gm:.8g} m3/s2{density}; moments {moments} kg m2")
+        for line in _place(body):
+            print(line)
     for line in _gravity(entry.system):
         print(f"  gravity{line}")
     distances = np.linalg.norm(entry.state.si.position[1:] - entry.state.si.position[0], axis=1)
@@ -201,6 +204,21 @@ def _show(options: argparse.Namespace) -> int:
         more = "".join(f"; {key}: {source[key]}" for key in ("uncertainty", "note") if key in source)
         print(f"  {source['what']}: {source['source']}{more}")
     return 0
+
+
+def _place(body: "RigidBody") -> list[str]:
+    """Return where the body frame is in the shape's, in one line; nothing where they are the same."""
+    import numpy as np
+
+    cosine = (np.trace(body.turn) - 1) / 2
+    sine = np.linalg.norm(body.turn - body.turn.T) / np.sqrt(8)
+    angle = float(np.degrees(np.arctan2(sine, cosine)))
+    size = np.sqrt(body.si.moments.max() / body.si.mass)
+    offset = [x if abs(x) > 1e-9 * size else 0.0 for x in body.offset.value.tolist()]  # without round-off
+    if not any(offset) and angle <= 1e-6:
+        return []
+    shown = ", ".join(f"{x:.6g}" for x in offset)
+    return [f"    mass centre [{shown}] m, axes turned by {angle:.6g} deg in the shape's frame"]
 
 
 def _gravity(system: "System") -> list[str]:

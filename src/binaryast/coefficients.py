@@ -41,8 +41,11 @@ class GivenMoments(Shape):
             )
         return moved(self._values[: count(degree)], degree, origin, turn)
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(degree {self.degree})"
 
-@dataclass(frozen=True, eq=False)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class InertiaIntegrals(GivenMoments):
     """A body of which the inertia integrals T_ijk are given: those of x^i y^j z^k dm over its mass.
 
@@ -53,8 +56,8 @@ class InertiaIntegrals(GivenMoments):
     ----------
     table : array-like
         T_ijk up to a degree N >= 2, as T[i, j, k] of shape (N + 1, N + 1, N + 1), or with those of each k below each
-        other, ((N + 1)^2, N + 1): row k (N + 1) + i, column j, as GUBAS writes them. Elements above degree N are not
-        looked at.
+        other, ((N + 1)^2, N + 1): row k (N + 1) + i, column j, as GUBAS writes them. Elements above degree N must be
+        finite, and are otherwise ignored.
     length : Quantity
         The unit of length of the table, such as ``1 * u.km``.
 
@@ -109,7 +112,7 @@ class InertiaIntegrals(GivenMoments):
         )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class StokesCoefficients(GivenMoments):
     """A body whose gravity field is given by its Stokes coefficients.
 
@@ -121,7 +124,8 @@ class StokesCoefficients(GivenMoments):
     Parameters
     ----------
     C, S : array-like
-        C_lm and S_lm at [l][m], both (N + 1, N + 1) with N >= 2; what lies beyond m = l is not looked at. C_00 is 1.
+        C_lm and S_lm at [l][m], both (N + 1, N + 1) with N >= 2; what lies beyond m = l must be finite, and is
+        otherwise ignored. C_00 is 1.
     reference_radius : Quantity
         a (length).
     normalised : bool
@@ -160,7 +164,7 @@ class StokesCoefficients(GivenMoments):
             raise InputError(f"{name}: C: expected an array of shape (N + 1, N + 1) with N >= 2, got {brief(self.C)}")
         c, s = (numbers(part, f"{name}: {key}", (size, size)) for key, part in (("C", self.C), ("S", self.S)))
         for key, flag in (("normalised", self.normalised), ("condon_shortley", self.condon_shortley)):
-            if not isinstance(flag, bool):
+            if not isinstance(flag, (bool, np.bool_)):
                 raise InputError(f"{name}: {key}: expected True or False, got {brief(flag)}")
         if c[0, 0] != 1:
             raise InputError(f"{name}: C[0][0]: the mass is the body's: expected 1, got {c[0, 0]:g}")
@@ -172,6 +176,8 @@ class StokesCoefficients(GivenMoments):
             C=c,
             S=s,
             reference_radius=quantity(radius, "m"),
+            normalised=bool(self.normalised),
+            condon_shortley=bool(self.condon_shortley),
             degree=degree,
             centre=values[1:4].copy(),
             trace_is_known=False,
@@ -198,8 +204,19 @@ class StokesCoefficients(GivenMoments):
         trace = float(np.trace(given))
         result = (trace / 3) * np.eye(3) + mass * self.specific_inertia
         if np.abs(result - given).max() > AGREEMENT * trace:
+            turned = (
+                not np.any(given - np.diag(np.diag(given))) and np.abs(np.triu(result, 1)).max() > AGREEMENT * trace
+            )
             raise InputError(
                 f"{where}: it does not agree with the coefficients of degree 2, which with this trace make "
-                f"{brief(np.array2string(result, separator=', '))} kg m2, got {brief(given.tolist())}"
+                f"{_elements(result)} kg m2, got {_elements(given)}"
+                + ("; three moments are about the shape's axes: give the matrix" if turned else "")
             )
         return np.asarray(result)
+
+
+def _elements(matrix: Floats) -> str:
+    """Return the six elements of a symmetric matrix (3, 3) as text."""
+    names = ("xx", "xy", "xz", "yy", "yz", "zz")
+    values = matrix[np.triu_indices(3)].tolist()
+    return ", ".join(f"{name} {value:.9g}" for name, value in zip(names, values, strict=True))

@@ -27,7 +27,8 @@ def mascons(shape: Shape, *, count: int, arrangement: Literal["grid", "random"] 
     shape : Ellipsoid, Sphere, Dumbbell, Polyhedron or Layered
         What to fill. A hollow stays empty.
     count : int
-        How many points; on a grid about as many. 10^3 have the third and fourth moments to about 1 %.
+        How many points; on a grid about as many. 10^3 have the third and fourth moments to about 1 % on a grid and to
+        about 5 % at random.
     arrangement : {"grid", "random"}
         How they lie. A grid is nearer to the shape for as many points.
     seed : int
@@ -62,8 +63,8 @@ def mascons(shape: Shape, *, count: int, arrangement: Literal["grid", "random"] 
         raise InputError(f"mascons: {brief(shape)} has no inside to fill: expected one of {kinds}")
     if isinstance(count, bool) or not isinstance(count, (int, np.integer)) or count < 4:
         raise InputError(f"mascons: count={count!r}: expected a whole number of points, four or more")
-    if arrangement not in ARRANGEMENTS:
-        raise InputError(f"mascons: arrangement={arrangement!r}: expected 'grid' or 'random'")
+    if not isinstance(arrangement, str) or arrangement not in ARRANGEMENTS:
+        raise InputError(f"mascons: arrangement={brief(repr(arrangement))}: expected 'grid' or 'random'")
     if isinstance(seed, bool) or not isinstance(seed, (int, np.integer)) or seed < 0:
         raise InputError(f"mascons: seed={seed!r}: expected a whole number, 0 or more")
     points, densities = ARRANGEMENTS[arrangement](shape, int(count), int(seed))
@@ -135,7 +136,10 @@ def _matched(points: Floats, weights: Floats, shape: Shape) -> Floats:
         found = (arms * fractions[:, None]).T @ arms
         sizes = np.linalg.eigvalsh(found) if len(points) else np.zeros(3)
         if sizes[0] <= 1e-9 * sizes[-1]:
-            raise InputError(f"mascons: {len(points)} points inside, in a plane or less: expected a larger count")
+            raise InputError(
+                f"mascons: {len(points)} points inside, in a plane or less: expected a larger count, or "
+                "arrangement='random'"
+            )
         root = _root(found)
         back = np.linalg.inv(root)
         points = shape.centre + arms @ (back @ _root(root @ wanted @ root) @ back)

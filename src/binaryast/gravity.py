@@ -251,14 +251,10 @@ def _points(body: RigidBody) -> tuple[Floats, Floats]:
     """Return a body's points, or say that it has none."""
     if body.points is None:
         raise InputError(
-            f"PointPairs: {body.name} is {_article(type(body.shape).__name__)}, which is not a set of points: "
-            "use gravity=ba.SecondDegree(), or give it a PointCloud, Dumbbell or Sphere"
+            f"PointPairs: {body.name}, of shape {type(body.shape).__name__}, is not a set of points: "
+            "use gravity=ba.Multipole(4), or fill the shape with points, ba.mascons"
         )
     return body.points
-
-
-def _article(noun: str) -> str:
-    return f"an {noun}" if noun[0] in "AEIOU" else f"a {noun}"
 
 
 @dataclass(frozen=True, eq=False)

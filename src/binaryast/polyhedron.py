@@ -214,8 +214,9 @@ class Polyhedron(Shape):
         array([ True, False])
         """
         given = as_quantity(points, "m", "Polyhedron.contains: points")
-        count = len(given) if given.ndim else 0
-        return self.holds(to_si(given, "m", "Polyhedron.contains: points", shape=(count, 3)))
+        if given.ndim != 2 or given.shape[1] != 3:
+            raise InputError(f"Polyhedron.contains: points: expected an array of shape (k, 3), got shape {given.shape}")
+        return self.holds(to_si(given, "m", "Polyhedron.contains: points", shape=given.shape))
 
     def holds(self, points: Floats) -> NDArray[np.bool_]:
         """Return whether points (k, 3) [m] are inside, as `contains` does, without units."""

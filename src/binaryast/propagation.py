@@ -13,6 +13,7 @@ from astropy.units import Quantity
 
 from binaryast import constants
 from binaryast.errors import EndWarning, GravityWarning, InputError, StepWarning
+from binaryast.gravity import LARGEST_DEGREE
 from binaryast.integrators import Integrator, RungeKutta, Stepping
 from binaryast.kernels import loop
 from binaryast.kernels.jit import source_hash
@@ -242,11 +243,22 @@ def _next_degree_term(system: System, outcome: Outcome) -> float | None:
     if size > DOUBTFUL_TERM:
         warnings.warn(
             f"{pair.gravity!r} between {system.names[pair.primary]} and {system.names[pair.secondary]} leaves out "
-            f"terms up to {size:.2g} of G m1 m2/r, and more of the torques: take a higher degree of ba.Multipole",
+            f"terms up to {size:.2g} of G m1 m2/r, and more of the torques: {_remedy(system, outcome, pair)}",
             GravityWarning,
             stacklevel=4,
         )
     return size
+
+
+def _remedy(system: System, outcome: Outcome, pair: Pair) -> str:
+    """Return what helps where gravity leaves out too much."""
+    closest = float(np.linalg.norm(_configurations(outcome, pair)[0], axis=1).min(initial=np.inf))
+    points = "take ba.PointPairs() of bodies filled with points, ba.mascons"
+    if closest < system.bodies[pair.primary].bounding_radius + system.bodies[pair.secondary].bounding_radius:
+        return f"at {closest:.4g} m spheres that hold the bodies meet, a higher degree need not be better: {points}"
+    if pair.gravity.cut_at == LARGEST_DEGREE:
+        return f"there is no higher degree: {points}"
+    return "take a higher degree of ba.Multipole"
 
 
 def _configurations(outcome: Outcome, pair: Pair) -> tuple[Floats, Floats]:

@@ -3,6 +3,7 @@
 A shape has a frame of its own; `binaryast.RigidBody` finds the mass centre and the principal axes in it.
 """
 
+import warnings
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from math import pi
@@ -11,10 +12,12 @@ from typing import Any
 import numpy as np
 from astropy.units import Quantity
 
-from binaryast.errors import InputError
+from binaryast.errors import DensityWarning, InputError
 from binaryast.kernels.moments import moved, of_ellipsoid, of_points
 from binaryast.units import Floats, as_quantity, checked, numbers, quantity, to_si
 from binaryast.values import Value
+
+DENSITIES = (100.0, 20000.0)  # kg / m3: what small bodies are made of lies between
 
 
 class Shape(Value, ABC):
@@ -316,3 +319,24 @@ class PointCloud(Shape):
         """Return the specific moments in another frame, see `Shape.moments`: sums over the points."""
         fractions = self.weights / self.weights.sum()
         return of_points((self.positions.value - origin) @ turn, fractions, degree)
+
+    def __repr__(self) -> str:
+        count = len(self.positions)
+        return f"{type(self).__name__}({count} point{'s' if count > 1 else ''})"
+
+
+def look_at_density(shape: Shape, mass: float, name: str, *, stacklevel: int) -> None:
+    """Warn where the length unit of a mesh cannot be right for a mass given [kg]."""
+    if shape.corners is None or shape.volume is None:
+        return
+    (lowest, highest), density = DENSITIES, mass / shape.volume
+    if lowest <= density <= highest:
+        return
+    factor = np.cbrt(density / 2000)
+    change = f"{factor:.3g} times longer" if factor > 1 else f"{1 / factor:.3g} times shorter"
+    warnings.warn(
+        f"{name}: {mass:g} kg in this mesh's volume make {density:.3g} kg/m3, "
+        f"expected {lowest:g} to {highest:g}: is its unit right? Lengths {change} would make 2000 kg/m3",
+        DensityWarning,
+        stacklevel=stacklevel,
+    )

@@ -332,8 +332,10 @@ class Trajectory(Value):
             f"linear {self.max_relative_linear_momentum_error:.1e}, "
             f"rotation {self.max_rotation_error:.1e}",
         ]
-        if self.max_next_degree_term is not None:
-            lines.append(f"  next degrees of gravity: at most {self.max_next_degree_term:.1e} of G m1 m2/r")
+        if any(pair.gravity.cut_at is not None for pair in self.system.pairs):
+            size = self.max_next_degree_term
+            known = "not known" if size is None else f"at most {size:.1e} of G m1 m2/r"
+            lines.append(f"  next degrees of gravity: {known}")
         return "\n".join(lines)
 
     def _distances(self) -> list[str]:
@@ -345,9 +347,7 @@ class Trajectory(Value):
             d = self.distance(0, i).value
             of = "" if len(names) == 2 else f" of {names[i]} from {names[0]}"
             lines.append(f"  separation{of} {d[0]:.6g} m at the start, {d[-1]:.6g} m at the end")
-        if len(names) == 2:
-            return [f"{lines[0]}, {closest}"]
-        return [*lines, f"  any two: {closest}"]
+        return [f"{lines[0]}, {closest}"] if len(names) == 2 else [*lines, f"  any two: {closest}"]
 
     def to_table(self) -> "QTable":
         """Return the run as an astropy table: one row a time, a column a number; attitudes as quaternions, scalar last.

@@ -10,7 +10,7 @@ from astropy.units import Quantity
 from binaryast.errors import InputError
 from binaryast.kernels.moments import second_degree, specific_inertia
 from binaryast.rotations import rotation
-from binaryast.shapes import Shape
+from binaryast.shapes import Shape, look_at_density
 from binaryast.units import Floats, brief, quantity, to_si
 from binaryast.values import Value
 
@@ -32,7 +32,8 @@ class Part(Value):
     shape : Shape
         Its geometry.
     mass, density : Quantity
-        One of the two. A negative one takes mass away: a hollow, or what a part lying inside another has less.
+        One of the two. A negative one takes mass away: a hollow, or what a part lying inside another has less. Such a
+        part has no surface: what it cuts out of the surface of another counts as filled where bodies touch.
     offset : Quantity, optional
         Origin (3,) of its frame in the union's (length); zero by default.
     turn : array-like or Rotation, optional
@@ -43,6 +44,11 @@ class Part(Value):
     InputError
         For none or both of mass and density, zero, a shape without volume given a density, one without inertia, or a
         turn that is no rotation.
+
+    Warns
+    -----
+    DensityWarning
+        Where a mesh of faces and its mass make a density that no small body has: its unit of length may be wrong.
 
     Examples
     --------
@@ -63,13 +69,13 @@ class Part(Value):
         if not isinstance(self.shape, Shape):
             raise InputError(f"Part: shape: expected a shape such as ba.Ellipsoid(...), got {brief(self.shape)}")
         if not self.shape.trace_is_known:
-            raise InputError(f"Part: a {type(self.shape).__name__} has no inertia of its own: it cannot be a part")
+            raise InputError(f"Part: {type(self.shape).__name__} has no inertia of its own: it cannot be a part")
         if (self.mass is None) == (self.density is None):
             raise InputError("Part: give one of mass= and density=")
         if self.density is None:
             mass = float(to_si(self.mass, "kg", "Part: mass"))
         elif self.shape.volume is None:
-            raise InputError(f"Part: a {type(self.shape).__name__} has no volume: give mass=, not density=")
+            raise InputError(f"Part: {type(self.shape).__name__} has no volume: give mass=, not density=")
         else:
             mass = float(to_si(self.density, "kg / m3", "Part: density")) * self.shape.volume
         if mass == 0:
@@ -77,6 +83,8 @@ class Part(Value):
         offset = np.zeros(3) if self.offset is None else to_si(self.offset, "m", "Part: offset", shape=(3,))
         turn = np.eye(3) if self.turn is None else rotation(self.turn, "Part: turn", ())
         self._set(offset=quantity(offset, "m"), turn=turn, si=PartFloats(mass, offset, turn))
+        if mass > 0 and self.density is None:
+            look_at_density(self.shape, mass, "Part", stacklevel=4)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,19 +156,26 @@ class Union(Shape):
         return np.concatenate(positions), np.concatenate(fractions)
 
     def _corners(self) -> Floats | None:
-        """Return the vertices of all parts, None where one is no mesh."""
+        """Return the vertices of all parts with a surface, None where one is no mesh."""
+        solid = self._solid
         corners = [
-            part.si.offset + part.shape.corners @ part.si.turn.T
-            for part in self.parts
-            if part.shape.corners is not None
+            part.si.offset + part.shape.corners @ part.si.turn.T for part in solid if part.shape.corners is not None
         ]
-        return np.concatenate(corners) if len(corners) == len(self.parts) else None
+        return np.concatenate(corners) if len(corners) == len(solid) else None
+
+    @property
+    def _solid(self) -> list[Part]:
+        """The parts with a surface: not those that take mass away."""
+        return [part for part in self.parts if part.si.mass > 0]
 
     @property
     def pieces(self) -> list[tuple[Floats, Floats]]:
-        """The surface as ellipsoids: that of every part."""
+        """The surface as ellipsoids: that of every part but those of negative mass."""
         return [
             (part.si.offset + part.si.turn @ centre, part.si.turn @ (axes if axes.ndim == 2 else np.diag(axes)))
-            for part in self.parts
+            for part in self._solid
             for centre, axes in part.shape.pieces
         ]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({len(self.parts)} part{'s' if len(self.parts) > 1 else ''})"

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Floats: TypeAlias = NDArray[np.floating[Any]]
+CHUNK = 4096  # points that are summed at once: all monomials of each are in memory
 
 
 def count(degree: int) -> int:
@@ -56,11 +57,15 @@ def _odd_factorial(n: int) -> int:
 
 def of_points(positions: Floats, fractions: Floats, degree: int) -> Floats:
     """Return the specific moments of points (k, 3) with fractions of the mass (k,)."""
-    powers = np.ones((degree + 1, *positions.shape))
-    for n in range(degree):
-        powers[n + 1] = powers[n] * positions
     i, j, k = exponents(degree).T
-    return np.asarray((powers[i, :, 0] * powers[j, :, 1] * powers[k, :, 2]) @ fractions)
+    total = np.zeros(count(degree))
+    for first in range(0, len(positions), CHUNK):
+        some = positions[first : first + CHUNK]
+        powers = np.ones((degree + 1, *some.shape))
+        for n in range(degree):
+            powers[n + 1] = powers[n] * some
+        total += (powers[i, :, 0] * powers[j, :, 1] * powers[k, :, 2]) @ fractions[first : first + CHUNK]
+    return total
 
 
 def moved(moments: Floats, degree: int, origin: Floats, turn: Floats) -> Floats:

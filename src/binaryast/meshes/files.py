@@ -54,7 +54,12 @@ def read_by_trimesh(path: Path) -> Mesh:
     """Return the mesh of a PLY file as it is."""
     import trimesh
 
-    loaded = trimesh.load_mesh(str(path), process=False, fix_texture=False, skip_materials=True)
+    try:
+        loaded = trimesh.load_mesh(str(path), process=False, fix_texture=False, skip_materials=True)
+    except ImportError:  # of what it would need to read the file as text, when a binary file is shorter than it says
+        raise MeshError(f"{path}: it ends too early, or is no {path.suffix.lower()} file: get it again") from None
+    if not len(getattr(loaded, "faces", ())):
+        raise MeshError(f"{path}: it has no faces: a cloud of points, a file that was cut off, or of another kind")
     return Mesh(np.array(loaded.vertices, dtype=np.float64), np.array(loaded.faces, dtype=np.int64))
 
 
@@ -90,7 +95,7 @@ def read_tab(path: Path) -> Mesh:
     vertices and plates, in one line or each before its own table, and its rows x y z and i j k may be numbered.
     Vertices are counted from 0 in some of them, from 1 in others: from 0 where a face has the vertex 0.
     """
-    rows = _rows(path)
+    rows = [" ".join(row).split() for row in _rows(path, ",")]  # separated by spaces, commas or both
     if rows and rows[0][0] in ("v", "f"):
         vertices = _table([row[1:] for row in rows if row[0] == "v"], path, "vertices")
         return Mesh(vertices, _from_zero(_table([row[1:] for row in rows if row[0] == "f"], path, "faces"), path))
@@ -115,19 +120,44 @@ def read_tab(path: Path) -> Mesh:
 
 
 def read_csv(path: Path, facets: Path) -> Mesh:
-    """Return the mesh of two CSV files, as GUBAS reads them: any number, x, y, z; and v1, v2, v3, counted from 1."""
-    vertices = _table([row[:4] for row in _rows(path, ",")], path, "vertices", (4,))[:, 1:]
-    return Mesh(vertices, _from_zero(_table([row[:3] for row in _rows(facets, ",")], facets, "faces"), facets))
+    """Return the mesh of two CSV files, as GUBAS reads them: any number, x, y, z; and v1, v2, v3, counted from 1.
+
+    A first row without a number, the names of the columns, is skipped.
+    """
+    one, two = (_without_names(_rows(file, ",")) for file in (path, facets))
+    vertices = _table([row[:4] for row in one], path, "vertices", (4,))[:, 1:]
+    return Mesh(vertices, _from_zero(_table([row[:3] for row in two], facets, "faces"), facets))
+
+
+def _without_names(rows: Rows) -> Rows:
+    """Return rows without the first where it holds no number."""
+    return rows[1:] if rows and not any(_is_number(word) for word in rows[0]) else rows
+
+
+def _is_number(word: str) -> bool:
+    try:
+        _number(word)
+    except ValueError:
+        return False
+    return True
+
+
+def _number(word: str) -> float:
+    """Return a number, of which the exponent may also be written as in Fortran."""
+    return float(word.replace("D", "E").replace("d", "e"))
 
 
 def _rows(path: Path, separator: str | None = None) -> list[list[str]]:
-    """Return the words of each line of a text file that is neither empty nor a comment."""
+    """Return the words of each line of a text file that is neither empty nor a comment, without comments at its end.
+
+    A line that ends in a backslash goes on in the next.
+    """
     try:
         text = path.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as error:
         raise StorageError(f"{path}: cannot be read: {(error.strerror or str(error)).lower()}") from None
-    rows = (line.split(separator) for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#"))
-    return [[word.strip() for word in row] for row in rows]
+    lines = (line.split("#")[0] for line in text.replace("\\\n", " ").splitlines())
+    return [[word.strip() for word in line.split(separator)] for line in lines if line.strip()]
 
 
 def _table(rows: Rows, path: Path, what: str, columns: tuple[int, ...] = (3,)) -> Floats:
@@ -140,7 +170,7 @@ def _table(rows: Rows, path: Path, what: str, columns: tuple[int, ...] = (3,)) -
             expected = " or ".join(str(number) for number in columns)
             raise MeshError(f"{path}: {what}: expected {expected} numbers in each line, got {brief(' '.join(row))!r}")
     try:
-        return np.array([[float(word.replace("D", "E").replace("d", "e")) for word in row] for row in rows])
+        return np.array([[_number(word) for word in row] for row in rows])
     except ValueError as error:
         raise MeshError(f"{path}: {what}: {brief(error)}") from None
 

@@ -6,6 +6,7 @@ bodies at once. They are compiled when they are first asked for and kept like ev
 
 from collections.abc import Callable
 from functools import cache
+from threading import Lock
 from typing import Any
 
 from llvmlite import ir
@@ -18,6 +19,8 @@ from binaryast.kernels.moments import Floats
 from binaryast.kernels.mutual.multipole import Moments, Numbers, evaluated
 from binaryast.kernels.mutual.multipole_parameters import C_1, C_2, S_1, S_2, are_even, place_of
 from binaryast.kernels.symbols import Symbol, SymbolLanes
+
+COMPILING = Lock()  # without it, threads that ask for one kernel at once would each compile it
 
 
 def moments_of(lanes: SymbolLanes, at: Callable[[int], Symbol], degree: int, *, even: bool) -> Moments:
@@ -62,9 +65,15 @@ def written_out(_: Any, degree: Any, even: Any, p: Any, configuration: Any) -> A
     return PAIR_POTENTIAL.return_type(degree, even, p, configuration), code
 
 
-@cache
 def potential_of(degree: int, *, even: bool) -> Callable[..., PairGravity]:
     """Return the kernel of a degree, for all bodies or for those of even moments."""
+    with COMPILING:
+        return _compiled(degree, even)
+
+
+@cache
+def _compiled(degree: int, even: bool) -> Callable[..., PairGravity]:
+    """Compile a kernel, or find it among those kept."""
     also = int(even)  # the compiler knows whole numbers as such
 
     def potential(
