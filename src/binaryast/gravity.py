@@ -320,7 +320,7 @@ def _semi_axes(body: RigidBody) -> Floats:
     """Return the semi-axes (3,) of a homogeneous ellipsoid, or say that the body is none."""
     if not isinstance(body.shape, (Ellipsoid, Sphere)):
         raise InputError(
-            f"EllipsoidPair: {body.name} is {_article(type(body.shape).__name__)}, which is no ellipsoid: "
+            f"EllipsoidPair: {body.name} has the shape {type(body.shape).__name__}, which is no ellipsoid: "
             "use gravity=ba.Multipole(8), or give it an Ellipsoid or a Sphere"
         )
     if "inertia" in body.given:
