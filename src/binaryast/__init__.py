@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from binaryast.layered import Layered
     from binaryast.orbits import Orbit
     from binaryast.polyhedron import Polyhedron
+    from binaryast.polyhedron_pair import PolyhedronPair
     from binaryast.propagation import propagate
     from binaryast.shapes import Dumbbell, Ellipsoid, Point, PointCloud, Shape, Sphere
     from binaryast.state import RelativeState, State
@@ -45,6 +46,7 @@ _HOMES = {
     "PointMass": "gravity",
     "PointPairs": "gravity",
     "Polyhedron": "polyhedron",
+    "PolyhedronPair": "polyhedron_pair",
     "RelativeState": "state",
     "RigidBody": "bodies",
     "RungeKutta": "integrators",
@@ -79,6 +81,7 @@ __all__ = [
     "PointMass",
     "PointPairs",
     "Polyhedron",
+    "PolyhedronPair",
     "RelativeState",
     "RigidBody",
     "RungeKutta",

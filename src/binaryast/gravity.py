@@ -48,6 +48,9 @@ class Gravity(Value, ABC):
             Where the model cannot take these bodies.
         """
 
+    def check_apart(self, secondary: RigidBody, primary: RigidBody, x: Floats, r: Floats) -> None:  # noqa: B027
+        """Raise where bodies at X (3,) [m] and R (3, 3) meet, in models that need to know."""
+
     def next_terms(self, secondary: RigidBody, primary: RigidBody, x: Floats, r: Floats) -> Floats | None:
         """Return the size of the next two terms of U that the model leaves out, over G m1 m2/r.
 

@@ -68,6 +68,7 @@ from binaryast.integrators import LGVI
 from binaryast.layered import Layered
 from binaryast.orbits import Orbit
 from binaryast.polyhedron import Polyhedron
+from binaryast.polyhedron_pair import PolyhedronPair
 from binaryast.state import RelativeState, State
 from binaryast.storage import as_path
 from binaryast.system import OTHERS, System
@@ -90,11 +91,13 @@ SHAPES = {
     )
 }
 GRAVITIES = {
-    kind.__name__: kind for kind in (gravity.SecondDegree, gravity.Multipole, gravity.PointPairs, gravity.PointMass)
+    kind.__name__: kind
+    for kind in (gravity.SecondDegree, gravity.Multipole, gravity.PointPairs, gravity.PointMass, PolyhedronPair)
 }
 STATES = ("circular_orbit", "from_elements", "from_orbits", "inertial", "relative")
 PLAIN = (  # arguments that have no unit
     *("weights", "parts", "table", "C", "S", "normalised", "condon_shortley", "turn", "degree"),
+    *("accuracy", "parallel"),
     *("density_ratio", "outer", "inner", "file", "facets", "unit", "mend"),
     *("eccentricity", "about", "R", "R2", "attitude", "epoch", "frame"),
 )

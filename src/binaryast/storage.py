@@ -21,7 +21,18 @@ import numpy as np
 from astropy.time import Time
 from astropy.units import Quantity
 
-from binaryast import bodies, coefficients, gravity, integrators, layered, polyhedron, shapes, system, unions
+from binaryast import (
+    bodies,
+    coefficients,
+    gravity,
+    integrators,
+    layered,
+    polyhedron,
+    polyhedron_pair,
+    shapes,
+    system,
+    unions,
+)
 from binaryast.errors import BinaryastError, StorageError
 from binaryast.units import brief
 from binaryast.values import Value
@@ -31,7 +42,9 @@ FORMAT_VERSION = 1
 SEAL_SIZE = 512  # bytes: the smallest block that HDF5 leaves free at the start of a file
 CLASSES: dict[str, type[Value]] = {
     kind.__name__: kind
-    for module in (bodies, coefficients, gravity, integrators, layered, polyhedron, shapes, system, unions)
+    for module in (
+        *(bodies, coefficients, gravity, integrators, layered, polyhedron, polyhedron_pair, shapes, system, unions),
+    )
     for kind in vars(module).values()
     if isinstance(kind, type) and issubclass(kind, Value)
 }

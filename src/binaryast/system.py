@@ -235,13 +235,15 @@ class System(Value):
         Raises
         ------
         InputError
-            For an attitude that is not a rotation, coinciding mass centres, or a system of several bodies.
+            For an attitude that is not a rotation, coinciding mass centres, bodies that meet where the gravity needs
+            them apart, or a system of several bodies.
         """
         self._only_pair("mutual_gravity")
         x = to_si(position, "m", "position", shape=(3,))
         if not np.any(x):
             raise InputError("position: the mass centres coincide: expected a position that is not zero")
         r = np.eye(3) if attitude is None else rotation(attitude, "attitude", ())
+        self.pairs[0].gravity.check_apart(self.secondary, self.primary, x, r)
         u, *rest = self.attraction(x, r)
         gradient, moment = np.array(rest[:3]), np.array(rest[3:])
         return MutualGravity(
