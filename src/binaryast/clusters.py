@@ -31,7 +31,7 @@ ORBITS: dict[int, list[tuple[float, float, float]]] = {
     ],
 }
 FROM = {6: 1e-4, 8: 0.0}  # from which accuracy on a degree is the fastest, as measured
-ERRORS = {6: 0.02, 8: 0.005}  # the factor of the estimated error: the largest that was measured, in dU/dX near contact
+SCALE = 0.007  # the factor of the estimated error: the largest error of dU/dX that was measured, near contact, over it
 EQUAL = 1e-13  # a node whose share in telling polynomials apart is below that of the first by this tells nothing new
 
 
@@ -69,7 +69,8 @@ def _permutations(s: float, t: float) -> list[tuple[float, float]]:
 def polynomials(points: Floats, degree: int) -> Floats:
     """Return products of Legendre's polynomials up to a total degree at points (n, 3) of the cube: (n, count)."""
     powers = np.indices((degree + 1,) * 3).reshape(3, -1)
-    table = np.polynomial.legendre.legvander3d(*points.T, [degree] * 3)
+    x, y, z = points.T
+    table = np.polynomial.legendre.legvander3d(x, y, z, [degree] * 3)
     return np.asarray(table[:, powers.sum(axis=0) <= degree])
 
 
@@ -182,7 +183,9 @@ def parameters_of(secondary: Surface, primary: Surface, *, gravity: float, accur
     one = Tree(secondary, degree, polyhedra.HEADER + rule.size)
     two = Tree(primary, degree, polyhedra.HEADER + rule.size + one.size)
     reach = sum(float(np.linalg.norm(body.triangles, axis=-1).max()) for body in (secondary, primary))
-    header[polyhedra.STRENGTH], header[polyhedra.SCALE], header[polyhedra.REACH] = gravity / 2, ERRORS[degree] / accuracy, reach
-    header[polyhedra.POWER], header[polyhedra.COUNT], header[polyhedra.RULE] = degree // 2, len(rule), polyhedra.HEADER
+    header[polyhedra.STRENGTH] = gravity / 2
+    header[polyhedra.SCALE], header[polyhedra.REACH] = SCALE / accuracy, reach
+    header[polyhedra.POWER] = degree // 2 + 1
     header[polyhedra.SECONDARY], header[polyhedra.PRIMARY] = one.start, two.start
+    header[polyhedra.COUNT], header[polyhedra.RULE] = len(rule), polyhedra.HEADER
     return np.concatenate([header, rule.T.ravel(), one.values, two.values])

@@ -48,7 +48,7 @@ class Gravity(Value, ABC):
             Where the model cannot take these bodies.
         """
 
-    def check_apart(self, secondary: RigidBody, primary: RigidBody, x: Floats, r: Floats) -> None:  # noqa: B027
+    def check_apart(self, secondary: RigidBody, primary: RigidBody, x: Floats, r: Floats) -> None:
         """Raise where bodies at X (3,) [m] and R (3, 3) meet, in models that need to know."""
 
     def next_terms(self, secondary: RigidBody, primary: RigidBody, x: Floats, r: Floats) -> Floats | None:

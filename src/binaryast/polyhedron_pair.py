@@ -69,7 +69,8 @@ class PolyhedronPair(Gravity):
         accuracy = float(numbers(self.accuracy, "PolyhedronPair: accuracy", ()))
         if not SMALLEST <= accuracy <= LARGEST:
             raise InputError(
-                f"PolyhedronPair: accuracy: expected a relative error from {SMALLEST:g} to {LARGEST:g}, got {accuracy:g}"
+                f"PolyhedronPair: accuracy: expected a relative error from {SMALLEST:g} to {LARGEST:g}, "
+                f"got {accuracy:g}"
             )
         if not isinstance(self.parallel, (bool, np.bool_)):
             raise InputError(f"PolyhedronPair: parallel: expected True or False, got {brief(repr(self.parallel))}")

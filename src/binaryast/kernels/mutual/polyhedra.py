@@ -52,13 +52,14 @@ def plus(a: PairGravity, b: PairGravity) -> PairGravity:
 def share(p: Array, charge: float, size: float, square: float) -> tuple[float, float]:
     """Return how much of a pair counts as it is, from 0 to 1, and the slope of that with the distance D, over D.
 
-    A rule of even degree n leaves of |d| some D (size/D)^(n + 1), size being the sum of the radii. Times the product of
-    the charges and over U, which is about 1/(D + reach) of bodies of mass one, this is the pair's error, here
-    e = charge size (D + reach) t^(n/2) with t = size^2/(D^2 + size^2), which stays finite where D vanishes.
+    A rule of even degree n leaves of d/|d| some (size/D)^(n + 1), size being the sum of the radii, and of the sum over
+    all of a closed surface, whose rho n dA add up to nothing, size/D of that. Times the product of the charges, over the
+    force, which is about 1/(D + reach)^2 of bodies of mass one, this is the pair's error, over that asked:
+    e = scale charge (D + reach)^2 t^(n/2 + 1), t = size^2/(D^2 + size^2), which stays finite where D vanishes.
     """
     distance = sqrt(square + TINY)
     t = size * size / (square + size * size)
-    e = p[SCALE] * charge * size * (distance + p[REACH])
+    e = p[SCALE] * charge * (distance + p[REACH]) ** 2
     for _ in range(int(p[POWER])):
         e *= t
     if e <= 1.0:
@@ -67,7 +68,7 @@ def share(p: Array, charge: float, size: float, square: float) -> tuple[float, f
         return 0.0, 0.0
     z = (WIDTH - e) / (WIDTH - 1.0)  # two derivatives vanish at both ends
     by_e = -30.0 * (z * (1.0 - z)) ** 2 / (WIDTH - 1.0)
-    by_d = e * (1.0 / (distance + p[REACH]) - 2.0 * p[POWER] * distance / (square + size * size))
+    by_d = e * (2.0 / (distance + p[REACH]) - 2.0 * p[POWER] * distance / (square + size * size))
     return z * z * z * (10.0 - z * (15.0 - 6.0 * z)), by_e * by_d / distance
 
 

@@ -7,7 +7,7 @@ threads there are. It is compiled, for some seconds, where it is first asked for
 import numba
 import numpy as np
 
-from binaryast.kernels.jit import PAIR_POTENTIAL, Array, PairGravity, jit
+from binaryast.kernels.jit import PAIR_POTENTIAL, Array, Indices, PairGravity, jit
 from binaryast.kernels.mutual import polyhedra
 from binaryast.kernels.mutual.polyhedra import ELEMENT, PARTS, PARTS_AT
 
@@ -15,7 +15,7 @@ TASKS = 8  # clusters of each body, at most; that many squared are shared out
 
 
 @jit(allocates=True)
-def clusters(p: Array, root: int) -> tuple[Array, int]:
+def clusters(p: Array, root: int) -> tuple[Indices, int]:
     """Return the places of the largest clusters of a body, and how many they are: a node makes way for its parts."""
     places = np.zeros(TASKS, dtype=np.int64)
     places[0], count, at = root, 1, 0
