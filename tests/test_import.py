@@ -51,6 +51,7 @@ def test_every_public_name_is_documented_with_an_example() -> None:
         "InertiaIntegrals",
         "StokesCoefficients",
         "Polyhedron",
+        "PolyhedronPair",
         "Layered",
         "mascons",
     ):
@@ -69,6 +70,7 @@ def test_values_pickle() -> None:
         system.gravity,
         ba.SecondDegree(),
         ba.Multipole(4),
+        ba.PolyhedronPair(1e-4),
         ba.PointMass(),
         scenario.integrator,
     ):

@@ -75,24 +75,20 @@ def test_a_reduced_rule_keeps_the_integrals(degree: int) -> None:
 
 
 def test_near_contact_as_the_sum_of_point_masses() -> None:
-    """Of mascons, whose sum is good to about the size of their cells squared."""
-    x = np.array([8.2, 0.5, 0.3])
+    """Of mascons on a grid, whose error falls with the square of its cells, or nearly."""
+    x = 0.8 * X  # 3 % from contact
     exact = values(ba.PolyhedronPair(1e-8), x)
     errors = []
     for count in (1000, 8000):
-        filled = [
-            ba.RigidBody(b.name, ba.mascons(b.shape, count=count), mass=b.mass, inertia=b.inertia)
-            for b in (PRIMARY, SECONDARY)
-        ]
-        turns = [f.turn.T @ b.turn for f, b in zip(filled, (PRIMARY, SECONDARY), strict=True)]
-        assert all(np.allclose(turn, np.eye(3), atol=1e-6) for turn in turns)
+        filled = [ba.RigidBody(b.name, ba.mascons(b.shape, count=count), mass=b.mass) for b in (PRIMARY, SECONDARY)]
+        assert all(np.allclose(f.turn, b.turn, atol=1e-9) for f, b in zip(filled, (PRIMARY, SECONDARY), strict=True))
         errors.append(apart(np.array(ba.System(filled, ba.PointPairs()).attraction(x, R)), exact, x))
-    assert errors[0] < 5e-3
-    assert errors[1] < 2e-3
+    assert errors[0] < 4e-3
+    assert errors[0] / errors[1] > 2.5
 
 
 @pytest.mark.parametrize("accuracy", [1e-2, 1e-4, 1e-6, 1e-8])
-@pytest.mark.parametrize("distance", [0.9, 1.0, 1.5, 4.0])
+@pytest.mark.parametrize("distance", [0.8, 0.9, 1.5, 4.0])
 def test_the_accuracy_is_kept(accuracy: float, distance: float) -> None:
     x = X * distance
     assert apart(values(ba.PolyhedronPair(accuracy), x), values(ba.PolyhedronPair(1e-10), x), x) < accuracy
@@ -103,7 +99,7 @@ def test_gradient_and_moment_are_exact_derivatives_whatever_the_accuracy(accurac
     """Where rules give way to others too: along a line that crosses many such places."""
     system = ba.System([PRIMARY, SECONDARY], ba.PolyhedronPair(accuracy))
     h = 1e-4
-    for distance in np.linspace(0.9, 1.6, 12):
+    for distance in np.linspace(0.8, 1.6, 12):
         x = X * distance
         exact = np.array(system.attraction(x, R))
         for i, e in enumerate(np.eye(3)):
@@ -120,11 +116,11 @@ def test_gradient_and_moment_are_exact_derivatives_whatever_the_accuracy(accurac
 @pytest.mark.parametrize("degree", [2, 4, 8])
 def test_the_multipole_comes_near_with_distance(degree: int) -> None:
     errors = []
-    for distance in (2.0, 3.0):
+    for distance in (3.0, 5.0):
         x = X * distance
-        two, one = (values(gravity, x) for gravity in (ba.PolyhedronPair(1e-11), ba.Multipole(degree)))
-        errors.append(abs(one[0] / two[0] - 1))
-    assert np.log(errors[0] / errors[1]) / np.log(1.5) == pytest.approx(degree + 1, abs=0.7)
+        two, one = (values(gravity, x)[1:4] for gravity in (ba.PolyhedronPair(1e-11), ba.Multipole(degree)))
+        errors.append(np.linalg.norm(one - two) / np.linalg.norm(two))
+    assert np.log(errors[0] / errors[1]) / np.log(5 / 3) == pytest.approx(degree + 1, abs=0.7)
 
 
 def test_layers_are_added_up() -> None:
@@ -133,14 +129,14 @@ def test_layers_are_added_up() -> None:
     body = ba.RigidBody("shell", ba.Layered(outer, inner, density_ratio=0), mass=1e6 * u.kg)
     x, r = np.array([9.0, 2.0, 1.0]), np.eye(3)
     whole = np.array(ba.System([body, SECONDARY], ba.PolyhedronPair(1e-10)).attraction(x, r))
-    solid = [ba.RigidBody("p", s, mass=s.volume * u.kg) for s in (outer, inner)]
+    solid = [ba.RigidBody("p", s, density=2000 * u.kg / u.m**3) for s in (outer, inner)]
     u1, u2 = (
         ba.System([p, SECONDARY], ba.PolyhedronPair(1e-10)).attraction(
             p.turn.T @ (body.offset.value + body.turn @ x - p.offset.value), p.turn.T @ body.turn @ r
         )[0]
         for p in solid
     )
-    assert whole[0] == pytest.approx((u1 - u2) * 1e6 / (outer.volume - inner.volume), rel=1e-9)
+    assert whole[0] == pytest.approx((u1 - u2) * 500 / (outer.volume - inner.volume), rel=1e-9)
 
 
 def test_on_several_cores_it_is_the_same() -> None:
@@ -169,7 +165,7 @@ def test_bodies_that_meet_are_refused() -> None:
     for x in ([7.0, 0, 0], [0.1, 0, 0]):
         with pytest.raises(InputError, match=r"PolyhedronPair: at X = .* m the surfaces of A and B meet"):
             system.mutual_gravity(x * u.m)
-    assert system.mutual_gravity([8.6, 0, 0] * u.m).energy.value < 0
+    assert system.mutual_gravity([8.9, 0, 0] * u.m).energy.value < 0
 
 
 @pytest.mark.parametrize("accuracy", [0, 1e-13, 0.1, -1, np.nan, "fine", [1e-3]])

@@ -26,8 +26,10 @@ class PolyhedronPair(Gravity):
     accuracy: it is the polyhedra as they are that attract. Rules give way to finer ones gradually, and the force and
     the moment are the derivatives of the sum itself, so that a run conserves its energy whatever the accuracy.
 
-    What it costs grows near contact; a run that mostly is far from it is better served by `Multipole` there. Far away
-    round-off grows, relative to U, as the square of the distance over the sizes, from 1e-15 near contact.
+    An evaluation takes about a millisecond, less far away and more near contact, where `Multipole` takes microseconds
+    and fails. Round-off grows, relative to U, as the square of the distance over the sizes: from 1e-15 near contact to
+    1e-9 at some hundred times the sizes. The faces alone say how mass is spread: an ``inertia`` given to a body changes
+    how it turns, and not this.
 
     Parameters
     ----------
@@ -60,6 +62,9 @@ class PolyhedronPair(Gravity):
     >>> bodies = [ba.RigidBody(name, cube, density=2000 * u.kg / u.m**3) for name in "AB"]
     >>> for gravity in (ba.Multipole(4), ba.Multipole(8), ba.PolyhedronPair(accuracy=1e-9)):
     ...     print(ba.System(bodies, gravity).mutual_gravity([11, 0, 0] * u.m).energy.round(4))
+    -23.7867 J
+    -24.0221 J
+    -23.9215 J
     """
 
     accuracy: float = 1e-6

@@ -1,4 +1,4 @@
-"""Two polyhedra: against volume integrals of boxes near contact, spheres, the multipole far away, and a day of a pair."""
+"""Two polyhedra: volume integrals of boxes near contact, spheres, the multipole far away, and a day of 1999 KW4."""
 
 import time
 from typing import NamedTuple
@@ -8,7 +8,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import binaryast as ba
-from validation import drawing, fitting, meshes, methods, truncation
+from validation import drawing, meshes, methods, truncation
 from validation.case import Case, Check, Effort, Findings, Picture
 from validation.meshes import Mesh
 from validation.oracles import boxes
@@ -23,7 +23,7 @@ SPHERES = (80, 320, 1280)  # faces
 TURNS = Rotation.random(12, random_state=4).as_matrix()
 GAP = 1.05  # times the sum of the radii
 DEGREES = (2, 4, 8)
-DISTANCES = np.array([2.6, 3.4, 4.4, 5.8])  # m
+DISTANCES = np.array([2.6, 4.0, 6.0, 9.0])  # m
 
 
 def system(one: Mesh, two: Mesh, gravity: ba.gravity.Gravity) -> ba.System:
@@ -99,16 +99,20 @@ def box_checks(found: Promise) -> list[Check]:
 
 
 def sphere_errors() -> np.ndarray:
-    """Return the differences from points of spheres of so many faces, near contact: root mean squares over turns."""
+    """Return errors (faces, 2) of dU/dX of spheres of so many faces near contact, of equal density and of equal mass.
+
+    They are root mean squares over turns of both.
+    """
     errors = []
     for faces in SPHERES:
         points, triangles = meshes.directions(faces)
         pair = system((points, triangles), (0.5 * points, triangles), ba.PolyhedronPair(1e-5))
+        share = (meshes.volume((points, triangles)) / (4 / 3 * np.pi)) ** 2  # of both masses in those of spheres
         found = []
         for turn, also in zip(TURNS, TURNS[::-1], strict=True):
             x = GAP * 1.5 * turn[0]
-            exact = Attraction(-1 / np.linalg.norm(x), x / np.linalg.norm(x) ** 3, np.zeros(3))
-            found.append(relative(attraction(pair, x, also), exact, x))
+            gradient = attraction(pair, x, also).gradient * np.dot(x, x)
+            found.append([np.linalg.norm(factor * gradient - turn[0]) for factor in (share, 1.0)])
         errors.append(np.sqrt(np.mean(np.square(found), axis=0)))
     return np.array(errors)
 
@@ -124,7 +128,7 @@ def lumps(seed: int, size: float) -> Mesh:
 def far_errors() -> np.ndarray:
     """Return by how much dU/dX differs (degree, distance) between the multipole and the surfaces."""
     both = lumps(1, 1.0), lumps(2, 0.6)
-    exact = system(*both, ba.PolyhedronPair(1e-11))
+    exact = system(*both, ba.PolyhedronPair(1e-12))
     towards = np.array([0.8, 0.5, -0.33])
     places = np.outer(DISTANCES, towards / np.linalg.norm(towards))
     values = [attraction(exact, x, ATTITUDE) for x in places]
@@ -140,14 +144,14 @@ def far_errors() -> np.ndarray:
 def far_checks(found: np.ndarray) -> list[Check]:
     """Return the checks of the powers by which the multipole comes near."""
     checks = []
-    for degree, errors, tolerance in zip(DEGREES, found, (0.1, 0.1, 0.3), strict=True):
+    for degree, errors, tolerance in zip(DEGREES, found, (0.3, 0.4, 1.5), strict=True):
         slopes = -np.diff(np.log(errors)) / np.diff(np.log(DISTANCES))
         checks.append(
             Check(
                 f"dU/dX minus that of degree {degree}: falls with distance by the power {degree + 1}",
                 slopes[-1] - (degree + 1),
                 tolerance,
-                "the next degree adds its part, size/r of it",
+                "the next degrees add their parts, size/r of it",
                 shown=", ".join(f"{slope:.3f}" for slope in slopes),
             )
         )
@@ -185,9 +189,7 @@ def days(duration: u.Quantity) -> tuple[np.ndarray, list[Day]]:
         pair = ba.System(bodies, gravity)
         ba.propagate(pair, start, duration=1 * u.min, integrator=ba.LGVI(30 * u.s))  # so that nothing is compiled below
         began = time.perf_counter()
-        run = ba.propagate(
-            pair, start, duration=duration, integrator=ba.LGVI(30 * u.s), save_every=duration / 24
-        )
+        run = ba.propagate(pair, start, duration=duration, integrator=ba.LGVI(30 * u.s), save_every=duration / 24)
         cost = (time.perf_counter() - began) / run.steps * 1e6
         runs.append(Day(name, run.si.position[:, 1] - run.si.position[:, 0], run.max_energy_error_over_potential, cost))
     return run.si.time / 3600, runs
@@ -196,27 +198,26 @@ def days(duration: u.Quantity) -> tuple[np.ndarray, list[Day]]:
 def day_checks(runs: list[Day], hours: float) -> list[Check]:
     """Return the checks of the runs."""
     best = runs[-1]
+    apart = {day.name: np.linalg.norm(day.where - best.where, axis=1).max() for day in runs[:-1]}
+    steps = f"1999 KW4, {hours:g} h in steps of 30 s"
     checks = [
         Check(
-            f"1999 KW4, {hours:g} h in steps of 30 s: error of energy over |U| less that of degree 8: {day.name}",
-            day.energy - runs[1].energy,
-            0.05 * runs[1].energy,
-            "the integrator's own error, alike for all: the surfaces add none, whatever their accuracy",
-            shown=f"{day.energy:.3e}, degree 8 {runs[1].energy:.3e}",
-            printed=True,
+            f"{steps}: largest error of energy over |U| of the runs with surfaces, whatever their accuracy",
+            max(day.energy for day in runs[2:]),
+            2e-6,
+            "the integrator's own error: that of degree 8 is the same",
+            shown=", ".join(f"{day.energy:.3e}" for day in runs[1:]),
         )
-        for day in runs[2:]
     ]
-    apart = {day.name: np.linalg.norm(day.where - best.where, axis=1).max() for day in runs[:-1]}
     checks += [
         Check(
-            f"1999 KW4, {hours:g} h: distance from the run with 1e-8 [m], beside {apart[other]:.2g} m of {other}: {name}",
-            apart[name],
-            apart[other],
+            f"{steps}: distance from the run with 1e-8, of that with {name}, over that of {other}",
+            apart[f"surfaces, {name}"] / apart[other],
+            tolerance,
             "what the accuracy leaves, beside what the series leaves out",
-            printed=True,
+            shown=f"{apart[f'surfaces, {name}']:.2g} m, {apart[other]:.2g} m",
         )
-        for name, other in (("surfaces, 1e-06", "degree 8"), ("surfaces, 1e-03", "degree 4"))
+        for name, other, tolerance in (("1e-06", "degree 8", 0.05), ("1e-03", "degree 4", 0.2))
     ]
     return checks
 
@@ -224,15 +225,15 @@ def day_checks(runs: list[Day], hours: float) -> list[Check]:
 def run(effort: Effort) -> Findings:
     """Compare with each of the oracles."""
     kept, spheres, far = promise(), sphere_errors(), far_errors()
-    slopes = methods.slope(1 / np.sqrt(SPHERES), spheres[:, 1])
+    slope = methods.slope(1 / np.sqrt(SPHERES), spheres[:, 0])
     checks = [
         *box_checks(kept),
         Check(
-            "spheres 5 % from contact: dU/dX tends to that of points with the size of the faces by the power 2",
-            slopes - 2,
+            "spheres of faces, of equal density, 5 % from contact: dU/dX tends to that of points by the power 2",
+            slope - 2,
             0.15,
-            "the chords of a sphere; a spiral of points is not quite even",
-            shown=f"{slopes:.3f}",
+            "a face cuts off what is beyond it, by the square of its size; near contact the nearest ones matter more",
+            shown=f"{slope:.3f}",
             headline=True,
         ),
         *far_checks(far),
@@ -255,10 +256,11 @@ def picture(kept: Promise, spheres: np.ndarray, far: np.ndarray) -> Picture:
     figure, (left, middle, right) = drawing.axes(3)
     for k, quantity in enumerate(truncation.QUANTITIES):
         drawing.curve(left, ACCURACIES, kept.parallel[:, k], quantity, k)
-        drawing.curve(middle, SPHERES, spheres[:, k], quantity, k)
     drawing.slope_line(left, ACCURACIES, (1e-5, 1e-5), 1, "what is asked")
     left.set(xlabel="accuracy asked", ylabel="error", title="boxes 5 % from contact")
-    drawing.slope_line(middle, SPHERES, (SPHERES[-1], spheres[-1, 1]), -1, "size of a face squared")
+    drawing.curve(middle, SPHERES, spheres[:, 0], "dU/dX, equal density", 0)
+    drawing.curve(middle, SPHERES, spheres[:, 1], "dU/dX, equal mass", 1)
+    drawing.slope_line(middle, SPHERES, (SPHERES[-1], spheres[-1, 0]), -1, "size of a face squared")
     middle.set(xlabel="faces of each sphere", ylabel="difference from points", title="spheres 5 % from contact")
     for i, (degree, errors) in enumerate(zip(DEGREES, far, strict=True)):
         drawing.curve(right, DISTANCES, errors, f"degree {degree}", i)
@@ -268,8 +270,8 @@ def picture(kept: Promise, spheres: np.ndarray, far: np.ndarray) -> Picture:
     for ax in (left, middle, right):
         drawing.legend(ax)
     caption = (
-        "Two polyhedra. Left: boxes with a gap of 5 %, errors against volume integrals for each accuracy asked. Middle: "
-        "spheres of faces beside points: the mesh's own error. Right: the multipole comes near with distance as it should."
+        "Two polyhedra. Left: boxes 5 % from contact, errors against volume integrals for each accuracy asked. Middle: "
+        "spheres of faces beside points: the mesh's own error. Right: the multipole comes near with distance."
     )
     return Picture("polyhedron-pair", figure, caption)
 
@@ -287,7 +289,7 @@ def day_picture(times: np.ndarray, runs: list[Day]) -> Picture:
 
 CASE = Case(
     "polyhedron-pair",
-    "Is the gravity of two polyhedra right from contact to far away, to the accuracy asked, and does a run conserve it?",
+    "Is the gravity of two polyhedra right to the accuracy asked, near contact and far away, and is energy conserved?",
     "volume integrals of boxes by Gauss's rules, points for spheres, the multipole far away",
     run,
     needs=("scipy",),

@@ -3,6 +3,8 @@
 For G m1 m2 = 1, in the axes of the first box, which is at the origin, as in ``potentials.py``.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from validation.oracles.potentials import Attraction
@@ -35,8 +37,8 @@ def _weights(one: float, two: float, x: float, nodes: int) -> tuple[np.ndarray, 
     """Return nodes of d = x + s - t with |s| < two, |t| < one, and weights of the integrals of 1 and of s."""
     kinks = np.unique(x + np.array([-two - one, -two + one, two - one, two + one]))
     g, w = np.polynomial.legendre.leggauss(nodes)
-    d = np.concatenate([(a + b) / 2 + (b - a) / 2 * g for a, b in zip(kinks, kinks[1:], strict=False)])
-    w = np.concatenate([(b - a) / 2 * w for a, b in zip(kinks, kinks[1:], strict=False)])
+    d = np.concatenate([(a + b) / 2 + (b - a) / 2 * g for a, b in pairwise(kinks)])
+    w = np.concatenate([(b - a) / 2 * w for a, b in pairwise(kinks)])
     low, high = np.maximum(-two, d - x - one), np.minimum(two, d - x + one)  # where s can be
     return d, w * (high - low), w * (high**2 - low**2) / 2
 

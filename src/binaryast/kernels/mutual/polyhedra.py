@@ -53,8 +53,8 @@ def share(p: Array, charge: float, size: float, square: float) -> tuple[float, f
     """Return how much of a pair counts as it is, from 0 to 1, and the slope of that with the distance D, over D.
 
     A rule of even degree n leaves of d/|d| some (size/D)^(n + 1), size being the sum of the radii, and of the sum over
-    all of a closed surface, whose rho n dA add up to nothing, size/D of that. Times the product of the charges, over the
-    force, which is about 1/(D + reach)^2 of bodies of mass one, this is the pair's error, over that asked:
+    all of a closed surface, whose rho n dA add up to nothing, size/D of that. Times the product of the charges, over
+    the force, which is about 1/(D + reach)^2 of bodies of mass one, this is the pair's error, over that asked:
     e = scale charge (D + reach)^2 t^(n/2 + 1), t = size^2/(D^2 + size^2), which stays finite where D vanishes.
     """
     distance = sqrt(square + TINY)
