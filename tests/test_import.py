@@ -46,6 +46,8 @@ def test_every_public_name_is_documented_with_an_example() -> None:
         "pair_potential",
         "PairPotential",
         "Multipole",
+        "EllipsoidPair",
+        "Adaptive",
         "Union",
         "Part",
         "InertiaIntegrals",
@@ -71,6 +73,7 @@ def test_values_pickle() -> None:
         ba.SecondDegree(),
         ba.Multipole(4),
         ba.PolyhedronPair(1e-4),
+        ba.Adaptive(accuracy=1e-6, far=ba.Multipole(4)),
         ba.PointMass(),
         scenario.integrator,
     ):

@@ -160,6 +160,21 @@ def test_a_run_conserves_energy_with_the_square_of_the_step() -> None:
     assert errors[0] / errors[1] == pytest.approx(4, rel=0.1)
 
 
+def test_joined_to_a_multipole_far_away() -> None:
+    near, gravity = (
+        ba.PolyhedronPair(1e-6),
+        ba.Adaptive(accuracy=1e-5, near=ba.PolyhedronPair(1e-6), far=ba.Multipole(6)),
+    )
+    begin, end = gravity.interval(PRIMARY, SECONDARY).value
+    for distance, model in ((0.9 * begin, near), (1.1 * end, ba.Multipole(6))):
+        x = X * distance / np.linalg.norm(X)
+        np.testing.assert_array_equal(values(gravity, x), values(model, x))
+    x = X * (begin + end) / 2 / np.linalg.norm(X)
+    assert apart(values(gravity, x), values(near, x), x) < 1e-4
+    with pytest.raises(InputError, match="the surfaces of A and B meet"):
+        ba.System([PRIMARY, SECONDARY], gravity).mutual_gravity([7, 0, 0] * u.m)
+
+
 def test_bodies_that_meet_are_refused() -> None:
     system = ba.System([PRIMARY, SECONDARY], ba.PolyhedronPair())
     for x in ([7.0, 0, 0], [0.1, 0, 0]):
@@ -176,10 +191,10 @@ def test_other_accuracies_are_refused(accuracy: object) -> None:
 
 def test_other_bodies_and_options_are_refused() -> None:
     ball = ba.RigidBody("ball", ba.Sphere(1 * u.m), mass=1 * u.kg)
-    with pytest.raises(InputError, match=r"PolyhedronPair: ball is a Sphere, which is no polyhedron: expected"):
+    with pytest.raises(InputError, match="PolyhedronPair: ball is not made of polyhedra but of a Sphere: expected"):
         ba.System([PRIMARY, ball], ba.PolyhedronPair())
     core = ba.Layered(PRIMARY.shape, ba.Sphere(0.5 * u.m), density_ratio=2)
-    with pytest.raises(InputError, match="core is a Layered with a layer that is no polyhedron"):
+    with pytest.raises(InputError, match="PolyhedronPair: core is not made of polyhedra but of a Layered"):
         ba.System([PRIMARY, ba.RigidBody("core", core, mass=1e6 * u.kg)], ba.PolyhedronPair())
     with pytest.raises(InputError, match="PolyhedronPair: parallel: expected True or False, got 2"):
         ba.PolyhedronPair(parallel=2)

@@ -62,6 +62,8 @@ def bodies(kind: str) -> list[ba.RigidBody]:
 def jobs_of(kind: str) -> dict[tuple[str, str], tuple[Callable[[int], object], int]]:
     """Return what is measured: evaluations and steps at each degree."""
     gravities: list[Gravity] = [ba.SecondDegree(), *(ba.Multipole(degree) for degree in DEGREES)]
+    if kind == "ellipsoids":
+        gravities += [ba.EllipsoidPair(), ba.Adaptive(accuracy=1e-6)]
     v = np.concatenate([X, Rotation.from_rotvec([0.5, -0.3, 0.9]).as_matrix().ravel()])
     jobs: dict[tuple[str, str], tuple[Callable[[int], object], int]] = {}
     for gravity in gravities:

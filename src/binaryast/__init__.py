@@ -10,19 +10,31 @@ from binaryast import constants as _constants
 
 if TYPE_CHECKING:
     from binaryast import analysis, catalogue, constants, equations, errors, plotting, scenario
+    from binaryast.adaptive import Adaptive
     from binaryast.bodies import RigidBody
     from binaryast.coefficients import InertiaIntegrals, StokesCoefficients
     from binaryast.errors import BinaryastError
+    from binaryast.fields import GravityField, polyhedron_field
     from binaryast.filling import mascons
-    from binaryast.gravity import Multipole, PairPotential, PointMass, PointPairs, SecondDegree, pair_potential
+    from binaryast.gravity import (
+        EllipsoidPair,
+        Multipole,
+        PairPotential,
+        PointMass,
+        PointPairs,
+        SecondDegree,
+        pair_potential,
+    )
     from binaryast.integrators import LGVI, RungeKutta
     from binaryast.layered import Layered
     from binaryast.orbits import Orbit
     from binaryast.polyhedron import Polyhedron
     from binaryast.polyhedron_pair import PolyhedronPair
+    from binaryast.polyhedron_point import PolyhedronPoint
     from binaryast.propagation import propagate
     from binaryast.shapes import Dumbbell, Ellipsoid, Point, PointCloud, Shape, Sphere
     from binaryast.state import RelativeState, State
+    from binaryast.surfaces import Surface, surface
     from binaryast.system import MutualGravity, System
     from binaryast.trajectory import Trajectory
     from binaryast.unions import Part, Union
@@ -30,9 +42,12 @@ if TYPE_CHECKING:
 __version__ = _constants.VERSION
 
 _HOMES = {
+    "Adaptive": "adaptive",
     "BinaryastError": "errors",
     "Dumbbell": "shapes",
     "Ellipsoid": "shapes",
+    "EllipsoidPair": "gravity",
+    "GravityField": "fields",
     "InertiaIntegrals": "coefficients",
     "LGVI": "integrators",
     "Layered": "layered",
@@ -47,6 +62,7 @@ _HOMES = {
     "PointPairs": "gravity",
     "Polyhedron": "polyhedron",
     "PolyhedronPair": "polyhedron_pair",
+    "PolyhedronPoint": "polyhedron_point",
     "RelativeState": "state",
     "RigidBody": "bodies",
     "RungeKutta": "integrators",
@@ -55,20 +71,26 @@ _HOMES = {
     "Sphere": "shapes",
     "State": "state",
     "StokesCoefficients": "coefficients",
+    "Surface": "surfaces",
     "System": "system",
     "Trajectory": "trajectory",
     "Union": "unions",
     "mascons": "filling",
     "pair_potential": "gravity",
+    "polyhedron_field": "fields",
     "propagate": "propagation",
+    "surface": "surfaces",
 }
 _MODULES = ("analysis", "catalogue", "constants", "equations", "errors", "plotting", "scenario")
 
 __all__ = [
     "LGVI",
+    "Adaptive",
     "BinaryastError",
     "Dumbbell",
     "Ellipsoid",
+    "EllipsoidPair",
+    "GravityField",
     "InertiaIntegrals",
     "Layered",
     "Multipole",
@@ -82,6 +104,7 @@ __all__ = [
     "PointPairs",
     "Polyhedron",
     "PolyhedronPair",
+    "PolyhedronPoint",
     "RelativeState",
     "RigidBody",
     "RungeKutta",
@@ -90,6 +113,7 @@ __all__ = [
     "Sphere",
     "State",
     "StokesCoefficients",
+    "Surface",
     "System",
     "Trajectory",
     "Union",
@@ -102,8 +126,10 @@ __all__ = [
     "mascons",
     "pair_potential",
     "plotting",
+    "polyhedron_field",
     "propagate",
     "scenario",
+    "surface",
 ]
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from binaryast.errors import ContactError
+from binaryast.gravity import Gravity
 from binaryast.kernels import loop
 from binaryast.system import System
 from binaryast.units import Floats
@@ -79,6 +80,12 @@ def contact_message(system: System, pair: int, after: float) -> str:
     """Return what is said of a contact."""
     primary, secondary = (system.names[i] for i in system.pairs[pair][:2])
     return f"{secondary} touched {primary} in the step that ends at {after:g} s"
+
+
+def not_finite_message(what: str, system: System) -> str:
+    """Return what is said where something is not a number: also why a gravity with limits of its own may be none."""
+    limits = {pair.gravity.limits for pair in system.pairs} - {Gravity.limits}
+    return ": ".join([what, *sorted(limits)])
 
 
 def overlap(system: System, pair: int, position: Floats) -> ContactError:

@@ -9,10 +9,9 @@ import numpy as np
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError
 from binaryast.gravity import Gravity
-from binaryast.layered import Layered
 from binaryast.polyhedron import Polyhedron
-from binaryast.shapes import Shape
-from binaryast.units import Floats, Indices, brief, numbers
+from binaryast.polyhedron_table import Layer, layers_of
+from binaryast.units import Floats, brief, numbers
 
 SMALLEST, LARGEST = 1e-12, 0.01  # accuracies
 
@@ -26,10 +25,10 @@ class PolyhedronPair(Gravity):
     accuracy: it is the polyhedra as they are that attract. Rules give way to finer ones gradually, and the force and
     the moment are the derivatives of the sum itself, so that a run conserves its energy whatever the accuracy.
 
-    An evaluation takes about a millisecond, less far away and more near contact, where `Multipole` takes microseconds
-    and fails. Round-off grows, relative to U, as the square of the distance over the sizes: from 1e-15 near contact to
-    1e-9 at some hundred times the sizes. The faces alone say how mass is spread: an ``inertia`` given to a body changes
-    how it turns, and not this.
+    An evaluation takes about a millisecond, less far away and more near contact. `Multipole` takes microseconds where
+    it converges, and `Adaptive` joins the two: ``ba.Adaptive(near=ba.PolyhedronPair())``. Round-off grows, relative to
+    U, as the square of the distance over the sizes: from 1e-15 near contact to 1e-9 at some hundred times the sizes.
+    The faces alone say how mass is spread: an ``inertia`` given to a body changes how it turns, and not this.
 
     Parameters
     ----------
@@ -100,51 +99,46 @@ class PolyhedronPair(Gravity):
         gravity = secondary.si.gm * primary.si.mass
         return parameters_of(*surfaces, gravity=gravity, accuracy=self.accuracy)
 
-    def check_apart(self, secondary: RigidBody, primary: RigidBody, x: Floats, r: Floats) -> None:
-        """Raise where the bodies touch or lie in each other at X (3,) and R (3, 3)."""
+    def check_place(self, secondary: RigidBody, primary: RigidBody, x: Floats, r: Floats) -> None:
+        """Raise where the bodies touch or lie in each other, see `Gravity.check_place`."""
         if np.linalg.norm(x) > secondary.bounding_radius + primary.bounding_radius:
             return
         from binaryast.kernels.face_contact import contacts
         from binaryast.kernels.inside import windings
 
-        (one, faces1), (two, faces2) = _outer(secondary), _outer(primary)
-        one = np.ascontiguousarray(x + one @ r.T)
-        within = windings(one[:1], two, faces2)[0] > 0 or windings(two[:1], one, faces1)[0] > 0
-        if within or len(contacts(np.concatenate([two, one]), np.concatenate([faces2, faces1 + len(two)]))):
+        first, second = _layers(secondary)[0].shape, _layers(primary)[0].shape
+        two = _vertices(primary, second)
+        one = np.ascontiguousarray(x + _vertices(secondary, first) @ r.T)
+        within = windings(one[:1], two, second.faces)[0] > 0 or windings(two[:1], one, first.faces)[0] > 0
+        both = np.concatenate([two, one]), np.concatenate([second.faces, first.faces + len(two)])
+        if within or len(contacts(*both)):
             raise InputError(
                 f"PolyhedronPair: at X = {brief(x)} m the surfaces of {primary.name} and {secondary.name} meet: "
                 "expected bodies that are apart"
             )
 
 
-def _polyhedra(body: RigidBody) -> list[tuple[float, Polyhedron]]:
-    """Return the homogeneous polyhedra that make a body, the outermost first, each with its fraction of the mass."""
-    shapes: list[Shape] = [body.shape]
-    shares: tuple[float, ...] = (1.0,)
-    if isinstance(body.shape, Layered):
-        shapes, shares = [body.shape.outer, body.shape.inner], body.shape.shares
-    for shape in shapes:
-        if not isinstance(shape, Polyhedron):
-            where = " with a layer that" if len(shapes) > 1 else ", which"
-            raise InputError(
-                f"PolyhedronPair: {body.name} is a {type(body.shape).__name__}{where} is no polyhedron: expected "
-                "ba.Polyhedron, or ba.Layered of two; use gravity=ba.Multipole(...) for other shapes"
-            )
-    return [(share, shape) for share, shape in zip(shares, shapes, strict=True) if isinstance(shape, Polyhedron)]
+def _layers(body: RigidBody) -> list[Layer]:
+    """Return the polyhedra that make a body, or say that it is not made of such."""
+    layers = layers_of(body)
+    if layers is None:
+        raise InputError(
+            f"PolyhedronPair: {body.name} is not made of polyhedra but of a {type(body.shape).__name__}: expected "
+            "ba.Polyhedron, or ba.Layered of two; use gravity=ba.Multipole(...) for other shapes"
+        )
+    return layers
 
 
 def _surface(body: RigidBody) -> tuple[Floats, Floats]:
     """Return the triangles (F, 3, 3) of all a body's surfaces in its frame, and the step of density (F,) at each."""
     triangles, densities = [], []
-    for share, shape in _polyhedra(body):
+    for shape, share in _layers(body):
         assert shape.volume is not None
-        corners = (shape.vertices.value - body.shape.centre) @ body.turn
-        triangles.append(corners[shape.faces])
+        triangles.append(_vertices(body, shape)[shape.faces])
         densities.append(np.full(len(shape.faces), share / shape.volume))
     return np.concatenate(triangles), np.concatenate(densities)
 
 
-def _outer(body: RigidBody) -> tuple[Floats, Indices]:
-    """Return the vertices in the body frame, and the faces, of the surface that others see."""
-    _, shape = _polyhedra(body)[0]
-    return np.ascontiguousarray((shape.vertices.value - body.shape.centre) @ body.turn), shape.faces
+def _vertices(body: RigidBody, shape: Polyhedron) -> Floats:
+    """Return the vertices (V, 3) of one of a body's layers in the body frame [m]."""
+    return np.ascontiguousarray((shape.vertices.value - body.shape.centre) @ body.turn)

@@ -4,7 +4,8 @@ The words are those of the Python interface: ``type`` names a class or a way to 
 arguments. Only gravity by pairs and the orbits of several bodies have tables of their own. A surface of faces is read
 from a file, whose path counts from that of the scenario: ``{ type = "Polyhedron", file = "rock.obj", unit = "km" }``,
 with ``facets`` and ``mend`` as in `binaryast.Polyhedron.read`; and ``Layered`` has two shapes in it, ``outer = { .. }``
-and ``inner = { .. }``::
+and ``inner = { .. }``. So has the gravity ``Adaptive`` two models, ``near = { .. }`` and ``far = { .. }``, or one, or
+none::
 
     [[bodies]]                                    # as many as there are, the primary first
     name = "A"
@@ -62,6 +63,7 @@ from astropy.time import Time
 from astropy.units import Quantity
 
 from binaryast import coefficients, gravity, shapes, unions
+from binaryast.adaptive import Adaptive
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError, ScenarioError, StorageError, did_you_mean
 from binaryast.integrators import LGVI
@@ -69,6 +71,7 @@ from binaryast.layered import Layered
 from binaryast.orbits import Orbit
 from binaryast.polyhedron import Polyhedron
 from binaryast.polyhedron_pair import PolyhedronPair
+from binaryast.polyhedron_point import PolyhedronPoint
 from binaryast.state import RelativeState, State
 from binaryast.storage import as_path
 from binaryast.system import OTHERS, System
@@ -92,13 +95,22 @@ SHAPES = {
 }
 GRAVITIES = {
     kind.__name__: kind
-    for kind in (gravity.SecondDegree, gravity.Multipole, gravity.PointPairs, gravity.PointMass, PolyhedronPair)
+    for kind in (
+        gravity.SecondDegree,
+        gravity.Multipole,
+        gravity.PointPairs,
+        gravity.PointMass,
+        gravity.EllipsoidPair,
+        PolyhedronPair,
+        PolyhedronPoint,
+        Adaptive,
+    )
 }
 STATES = ("circular_orbit", "from_elements", "from_orbits", "inertial", "relative")
 PLAIN = (  # arguments that have no unit
     *("weights", "parts", "table", "C", "S", "normalised", "condon_shortley", "turn", "degree"),
-    *("accuracy", "parallel"),
     *("density_ratio", "outer", "inner", "file", "facets", "unit", "mend"),
+    *("accuracy", "near", "far", "parallel"),
     *("eccentricity", "about", "R", "R2", "attitude", "epoch", "frame"),
 )
 EXAMPLES = {  # what a text with a unit looks like
@@ -275,7 +287,7 @@ def _gravity(table: dict[str, Any]) -> Any:
     """Return the model, second degree where the file says nothing; or models by pairs, the first one for the others."""
     pairs = table.get("pairs")
     others = {key: value for key, value in table.items() if key != "pairs"} or {"type": "SecondDegree"}
-    model = _typed(others, GRAVITIES, "gravity")
+    model = _model(others, "gravity")
     if pairs is None:
         return model
     if not isinstance(pairs, list) or not all(isinstance(pair, dict) for pair in pairs):
@@ -289,8 +301,14 @@ def _gravity(table: dict[str, Any]) -> Any:
             raise InputError(f"{where}.bodies: expected the names of two bodies, got {brief(names)}")
         if tuple(names) in models:
             raise InputError(f"{where}.bodies: the pair of {names[0]} and {names[1]} is given twice")
-        models[tuple(names)] = _typed({k: v for k, v in pair.items() if k != "bodies"}, GRAVITIES, where)
+        models[tuple(names)] = _model({k: v for k, v in pair.items() if k != "bodies"}, where)
     return models
+
+
+def _model(table: dict[str, Any], where: str) -> Any:
+    """Return a model of gravity, with the models inside it."""
+    table = {key: _model(value, f"{where}.{key}") if isinstance(value, dict) else value for key, value in table.items()}
+    return _typed(table, GRAVITIES, where)
 
 
 def _typed(table: dict[str, Any], kinds: dict[str, Any], where: str) -> Any:

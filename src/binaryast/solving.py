@@ -10,7 +10,14 @@ from scipy import integrate
 from binaryast import equations
 from binaryast.errors import InputError
 from binaryast.integrators import RungeKutta
-from binaryast.outcome import Outcome, Watch, contact_message, interruption_message, overlap
+from binaryast.outcome import (
+    Outcome,
+    Watch,
+    contact_message,
+    interruption_message,
+    not_finite_message,
+    overlap,
+)
 from binaryast.progress import keyboard
 from binaryast.schedule import Segment, row_times, schedule
 from binaryast.state import State
@@ -121,7 +128,7 @@ class SolvedRun:
         """Take in what is measured; raise where it is not a number, or an attitude no rotation at all."""
         now = self.equations.invariants(y)
         if not np.all(np.isfinite([*now.measures, now.potential_energy])):
-            raise InputError("the energy or another figure is not a number any more")
+            raise InputError(not_finite_message("the energy or another figure is not a number any more", self.system))
         if np.any(np.linalg.det(self.equations.snapshot(y).R) <= 0):
             raise InputError("an attitude has left SO(3) altogether: tighten the tolerances")
         if self.watch.look(now.measures):

@@ -10,7 +10,7 @@ from binaryast import working
 from binaryast.errors import StepError
 from binaryast.integrators import Stepping
 from binaryast.kernels import loop, status
-from binaryast.outcome import Outcome, Watch, contact_message, interruption_message, overlap
+from binaryast.outcome import Outcome, Watch, contact_message, interruption_message, not_finite_message, overlap
 from binaryast.progress import keyboard
 from binaryast.schedule import SLACK, Segment
 from binaryast.state import State
@@ -160,7 +160,8 @@ class SteppedRun:
         if self.code >= status.CONTACT:
             return "contact", contact_message(self.system, self.code - status.CONTACT, self.elapsed)
         if self.code == status.NOT_FINITE:
-            reason = self.raised or "positions, momenta or gravity are not numbers any more"
+            what = "positions, momenta or gravity are not numbers any more"
+            reason = self.raised or not_finite_message(what, self.system)
             return "failed", f"{reason}; the last good row is at {self.elapsed:g} s"
         if self.code != status.COMPLETED:
             return "failed", str(self._turn_error())

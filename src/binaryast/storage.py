@@ -22,6 +22,7 @@ from astropy.time import Time
 from astropy.units import Quantity
 
 from binaryast import (
+    adaptive,
     bodies,
     coefficients,
     gravity,
@@ -29,6 +30,7 @@ from binaryast import (
     layered,
     polyhedron,
     polyhedron_pair,
+    polyhedron_point,
     shapes,
     system,
     unions,
@@ -40,11 +42,13 @@ from binaryast.values import Value
 FORMAT = "binaryast trajectory"
 FORMAT_VERSION = 1
 SEAL_SIZE = 512  # bytes: the smallest block that HDF5 leaves free at the start of a file
+MODULES = (  # whose classes a file can bring back
+    *(adaptive, bodies, coefficients, gravity, integrators, layered),
+    *(polyhedron, polyhedron_pair, polyhedron_point, shapes, system, unions),
+)
 CLASSES: dict[str, type[Value]] = {
     kind.__name__: kind
-    for module in (
-        *(bodies, coefficients, gravity, integrators, layered, polyhedron, polyhedron_pair, shapes, system, unions),
-    )
+    for module in MODULES
     for kind in vars(module).values()
     if isinstance(kind, type) and issubclass(kind, Value)
 }

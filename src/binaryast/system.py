@@ -213,9 +213,7 @@ class System(Value):
         except Exception as error:  # whatever a user's function raises
             raise InputError(f"gravity: the potential raised {type(error).__name__}: {brief(error)}") from None
         if not np.all(np.isfinite(values)):
-            raise InputError(
-                f"gravity: at X = {brief(x)} m it is not a number: too near, too far, or a wrong potential"
-            )
+            raise InputError(f"gravity: at X = {brief(x)} m it is not a number: {pair.gravity.limits}")
         return values
 
     def mutual_gravity(self, position: Quantity, attitude: Any = None) -> MutualGravity:
@@ -235,15 +233,15 @@ class System(Value):
         Raises
         ------
         InputError
-            For an attitude that is not a rotation, coinciding mass centres, bodies that meet where the gravity needs
-            them apart, or a system of several bodies.
+            For an attitude that is not a rotation, coinciding mass centres, bodies that overlap where gravity cannot
+            take it, or a system of several bodies.
         """
         self._only_pair("mutual_gravity")
         x = to_si(position, "m", "position", shape=(3,))
         if not np.any(x):
             raise InputError("position: the mass centres coincide: expected a position that is not zero")
         r = np.eye(3) if attitude is None else rotation(attitude, "attitude", ())
-        self.pairs[0].gravity.check_apart(self.secondary, self.primary, x, r)
+        self.pairs[0].gravity.check_place(self.secondary, self.primary, x, r)
         u, *rest = self.attraction(x, r)
         gradient, moment = np.array(rest[:3]), np.array(rest[3:])
         return MutualGravity(

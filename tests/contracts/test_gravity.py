@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import binaryast as ba
-from tests.solids import icosphere
+from tests import solids
 
 
 @ba.pair_potential
@@ -43,10 +43,21 @@ def polyhedra() -> list[ba.RigidBody]:
     random = np.random.default_rng(4)
     bodies = []
     for name, size, mass in (("A", [420, 400, 330], 6e11), ("B", [250, 180, 120], 6e10)):
-        vertices, faces = icosphere(0)
+        vertices, faces = solids.icosphere(0)
         lumps = vertices * (1 + 0.05 * random.normal(size=(len(vertices), 1))) * size
         bodies.append(ba.RigidBody(name, ba.Polyhedron(lumps * u.m, faces), mass=mass * u.kg))
     return bodies
+
+
+def stone() -> ba.RigidBody:
+    """A box that is heavier at one end, so that it looks like itself from nowhere else."""
+    vertices, faces = solids.box((-300.0, -200.0, -150.0), (300.0, 200.0, 150.0))
+    vertices[4:, 1:] *= 0.6
+    return ba.RigidBody("A", ba.Polyhedron(vertices * u.m, faces), density=2400 * u.kg / u.m**3)
+
+
+def ball() -> ba.RigidBody:
+    return ba.RigidBody("B", ba.Sphere(100 * u.m), density=2000 * u.kg / u.m**3)
 
 
 MODELS = {
@@ -58,6 +69,12 @@ MODELS = {
     "PointPairs clouds": lambda: ba.System(clouds(), gravity=ba.PointPairs()),
     "PointPairs dumbbells": lambda: ba.System(dumbbells(), gravity=ba.PointPairs()),
     "PolyhedronPair": lambda: ba.System(polyhedra(), gravity=ba.PolyhedronPair(1e-10)),
+    "PolyhedronPoint": lambda: ba.System([stone(), ball()], gravity=ba.PolyhedronPoint()),
+    "PolyhedronPoint, the point first": lambda: ba.System([ball(), stone()], gravity=ba.PolyhedronPoint()),
+    "EllipsoidPair": lambda: ba.System(ellipsoids(), gravity=ba.EllipsoidPair()),
+    "EllipsoidPair reversed": lambda: ba.System(ellipsoids()[::-1], gravity=ba.EllipsoidPair()),
+    # the distance of the configurations lies in the interval, near neither end
+    "Adaptive": lambda: ba.System(ellipsoids(), gravity=ba.Adaptive(accuracy=3e-4, far=ba.SecondDegree())),
     "PairPotential": lambda: ba.System(ellipsoids(), gravity=ba.PairPotential(repelled, [3e12, 4e15])),
 }
 ROUNDOFF = {"PolyhedronPair": 1e-13}  # of U at 1500 m, where it is more than a few roundings: as the square of distance
@@ -106,7 +123,7 @@ def test_gradient_and_moment_are_derivatives_of_the_energy(system: ba.System) ->
             assert turn == pytest.approx(gravity.moment.value[i], abs=1e-10 * force * 1500)
 
 
-@pytest.mark.parametrize("name", ["SecondDegree", "Multipole 4 ellipsoids", "PointPairs dumbbells"])
+@pytest.mark.parametrize("name", ["SecondDegree", "Multipole 4 ellipsoids", "EllipsoidPair", "PointPairs dumbbells"])
 @pytest.mark.parametrize("signs", [(1, -1, -1), (-1, 1, -1), (-1, -1, 1)])
 def test_half_a_turn_about_a_principal_axis_changes_nothing(name: str, signs: tuple) -> None:
     """These bodies look the same after it: once the primary is turned, once the secondary."""

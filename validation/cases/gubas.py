@@ -12,8 +12,8 @@ from validation.oracles import gubas
 from validation.oracles.gubas import KM, MEGAJOULE, Rows
 
 SAME_MAP = 36000.0  # s: until here the secondary has not yet magnified what the two codes round differently
-MODELS: dict[int, Gravity] = {0: ba.PointMass(), 2: ba.SecondDegree()}
-DEGREES = (2,)  # whose runs are kept
+MODELS: dict[int, Gravity] = {0: ba.PointMass(), 2: ba.SecondDegree(), 4: ba.Multipole(4)}
+DEGREES = (2, 4)  # whose runs are kept
 Course = tuple[np.ndarray, list[Difference[float]]]  # times and differences
 FINEST = 0.625  # s, of five steps, each twice the next, whose limit is held against RK78
 

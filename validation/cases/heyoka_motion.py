@@ -241,7 +241,8 @@ def dumbbells() -> Arc:
 
 def ellipsoids() -> Arc:
     """Return Didymos and Dimorphos at second degree, planar, for one orbit."""
-    system, state = ba.catalogue.load("didymos")
+    system = ba.System(ba.catalogue.load("didymos")[0].bodies, gravity=ba.SecondDegree())
+    state = ba.State.circular_orbit(system, period=11.921473 * u.h, spins=[2.26 * u.h, "synchronous"])
     longer = {
         Effort.WHOLE: Longer(30 * 86400.0, 120_000, 8e-13),
         Effort.LONG: Longer(365.25 * 86400.0, 3_000_000, 4e-10),
@@ -255,6 +256,13 @@ def tumbling() -> Arc:
     """Return two triaxial bodies in full tumble, for ten hours."""
     longer = {Effort.WHOLE: Longer(100 * 3600.0, 36_000, 2e-13)}
     return Arc(*systems.tumbling_pair(), 10 * 3600.0, COUNTS, Tolerances(8e-32, 6e-14, 1.5e-14, 1e-3, 3e-12), longer)
+
+
+def fourth_degree() -> Arc:
+    """Return the tumbling pair with all moments to degree 4."""
+    system, state = systems.tumbling_pair()
+    system = ba.System(system.bodies, gravity=ba.Multipole(4))
+    return Arc(system, state, 10 * 3600.0, COUNTS, Tolerances(8e-32, 6e-14, 1.5e-14, 1e-3, 3e-12), {})
 
 
 def several() -> Arc:
@@ -277,6 +285,10 @@ QUESTIONS = {
     "heyoka-tumbling": (
         tumbling,
         "Does a pair in full, non-planar tumble move as the continuous equations and the Lagrangian say?",
+    ),
+    "heyoka-fourth-degree": (
+        fourth_degree,
+        "Does it with all moments of both ellipsoids to degree 4?",
     ),
     "heyoka-four-bodies": (several, "Do four bodies of three kinds move as the Lagrangian (15) says?"),
 }

@@ -51,7 +51,7 @@ def run(effort: Effort) -> Findings:
         Check(
             f"{model.name}: the ellipsoid as the primary: the same energy, force and torque",
             truncation.apart(other_way(model.gravity, place), PAIR.computed(model.gravity, place)).max(),
-            2e-15,
+            4e-15,
             "rounding",
             roundoff=True,
         )

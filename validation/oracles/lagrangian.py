@@ -85,6 +85,11 @@ class LagrangianMotion:
         for pair in self.system.pairs:
             two, one = pair.primary, pair.secondary
             x, R1, R2 = self.x[one] - self.x[two], self.R[one], self.R[two]
+            if isinstance(pair.gravity, ba.Multipole):
+                squares = [mutual_potentials.squares_of(self.system.bodies[i], self.units) for i in (one, two)]
+                degree = pair.gravity.degree
+                total += mutual_potentials.ellipsoids(gm[one], m[two], *squares, x, R1, R2, degree=degree)
+                continue
             if isinstance(pair.gravity, ba.SecondDegree):
                 squares = [5.0 * Jd[i] / m[i] for i in (one, two)]
                 total += mutual_potentials.ellipsoids(gm[one], m[two], *squares, x, R1, R2, degree=2)

@@ -41,6 +41,14 @@ def maccullagh(gm1: Any, m1: Any, m2: Any, J1: Array, J2: Array, X: Array, R: Ar
     return -gm1 * m2 / r - G * m2 * one / (2.0 * r * r * r) - G * m1 * two / (2.0 * r * r * r)
 
 
+def squares_of(body: ba.RigidBody, units: Units) -> Array:
+    """Return the squares of an ellipsoid's semi-axes."""
+    if not isinstance(body.shape, ba.Ellipsoid):
+        raise ValueError(f"expected an ellipsoid, got {body.shape}")
+    axes = np.array([axis.value / units.length for axis in (body.shape.a, body.shape.b, body.shape.c)]).astype(REAL)
+    return numbers(axes * axes)
+
+
 def ellipsoids(
     gm1: Any, m2: Any, squares1: Array, squares2: Array, x: Array, R1: Array, R2: Array, *, degree: int
 ) -> Any:
@@ -49,6 +57,8 @@ def ellipsoids(
     With D = sum a_i^2 (R e_i . grad)^2 the mean of f(x + R rho) over an ellipsoid is f + D f/10 + D^2 f/280 + ..;
     heyoka differentiates 1/|x|. Of second degree it holds for any body if a_i^2 is 5 J_d/m.
     """
+    if degree not in (2, 4):
+        raise ValueError(f"expected degree 2 or 4, got {degree}")
     tenth, small = (hy.expression(REAL(1.0) / REAL(n)) for n in (10.0, 280.0))  # not rounded to double
     D1, D2 = R1 @ np.diag(squares1) @ R1.T, R2 @ np.diag(squares2) @ R2.T
     total = 1.0 / norm(x) + tenth * contracted(derivatives(x, 2), D1 + D2)

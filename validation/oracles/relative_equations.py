@@ -37,6 +37,10 @@ class RelativeEquations:
         X, R = self.symbols["X"], self.symbols["R"]
         if isinstance(system.gravity, ba.SecondDegree):
             return mutual_potentials.maccullagh(gm1, m1, m2, J1, J2, X, R)
+        if isinstance(system.gravity, ba.Multipole):
+            squares = [mutual_potentials.squares_of(body, self.units) for body in reversed(system.bodies)]
+            one = numbers(np.eye(3).astype(REAL))
+            return mutual_potentials.ellipsoids(gm1, m2, *squares, X, R, one, degree=system.gravity.degree)
         points2, points1 = (mutual_potentials.points_of(body, system.gravity, self.units) for body in system.bodies)
         return mutual_potentials.point_pairs(gm1, m2, points1, points2, lambda rho1, rho2: X + R @ rho1 - rho2)
 
