@@ -53,6 +53,7 @@ def test_every_public_name_is_documented_with_an_example() -> None:
         "InertiaIntegrals",
         "StokesCoefficients",
         "Polyhedron",
+        "PolyhedronPair",
         "Layered",
         "mascons",
     ):
@@ -71,6 +72,7 @@ def test_values_pickle() -> None:
         system.gravity,
         ba.SecondDegree(),
         ba.Multipole(4),
+        ba.PolyhedronPair(1e-4),
         ba.Adaptive(accuracy=1e-6, far=ba.Multipole(4)),
         ba.PointMass(),
         scenario.integrator,

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from binaryast.layered import Layered
     from binaryast.orbits import Orbit
     from binaryast.polyhedron import Polyhedron
+    from binaryast.polyhedron_pair import PolyhedronPair
     from binaryast.polyhedron_point import PolyhedronPoint
     from binaryast.propagation import propagate
     from binaryast.shapes import Dumbbell, Ellipsoid, Point, PointCloud, Shape, Sphere
@@ -60,6 +61,7 @@ _HOMES = {
     "PointMass": "gravity",
     "PointPairs": "gravity",
     "Polyhedron": "polyhedron",
+    "PolyhedronPair": "polyhedron_pair",
     "PolyhedronPoint": "polyhedron_point",
     "RelativeState": "state",
     "RigidBody": "bodies",
@@ -101,6 +103,7 @@ __all__ = [
     "PointMass",
     "PointPairs",
     "Polyhedron",
+    "PolyhedronPair",
     "PolyhedronPoint",
     "RelativeState",
     "RigidBody",

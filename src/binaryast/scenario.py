@@ -70,6 +70,7 @@ from binaryast.integrators import LGVI
 from binaryast.layered import Layered
 from binaryast.orbits import Orbit
 from binaryast.polyhedron import Polyhedron
+from binaryast.polyhedron_pair import PolyhedronPair
 from binaryast.polyhedron_point import PolyhedronPoint
 from binaryast.state import RelativeState, State
 from binaryast.storage import as_path
@@ -100,6 +101,7 @@ GRAVITIES = {
         gravity.PointPairs,
         gravity.PointMass,
         gravity.EllipsoidPair,
+        PolyhedronPair,
         PolyhedronPoint,
         Adaptive,
     )
@@ -108,7 +110,7 @@ STATES = ("circular_orbit", "from_elements", "from_orbits", "inertial", "relativ
 PLAIN = (  # arguments that have no unit
     *("weights", "parts", "table", "C", "S", "normalised", "condon_shortley", "turn", "degree"),
     *("density_ratio", "outer", "inner", "file", "facets", "unit", "mend"),
-    *("accuracy", "near", "far"),
+    *("accuracy", "near", "far", "parallel"),
     *("eccentricity", "about", "R", "R2", "attitude", "epoch", "frame"),
 )
 EXAMPLES = {  # what a text with a unit looks like

@@ -29,6 +29,7 @@ from binaryast import (
     integrators,
     layered,
     polyhedron,
+    polyhedron_pair,
     polyhedron_point,
     shapes,
     system,
@@ -43,7 +44,7 @@ FORMAT_VERSION = 1
 SEAL_SIZE = 512  # bytes: the smallest block that HDF5 leaves free at the start of a file
 MODULES = (  # whose classes a file can bring back
     *(adaptive, bodies, coefficients, gravity, integrators, layered),
-    *(polyhedron, polyhedron_point, shapes, system, unions),
+    *(polyhedron, polyhedron_pair, polyhedron_point, shapes, system, unions),
 )
 CLASSES: dict[str, type[Value]] = {
     kind.__name__: kind

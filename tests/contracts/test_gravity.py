@@ -39,6 +39,16 @@ def dumbbells() -> list[ba.RigidBody]:
     ]
 
 
+def polyhedra() -> list[ba.RigidBody]:
+    random = np.random.default_rng(4)
+    bodies = []
+    for name, size, mass in (("A", [420, 400, 330], 6e11), ("B", [250, 180, 120], 6e10)):
+        vertices, faces = solids.icosphere(0)
+        lumps = vertices * (1 + 0.05 * random.normal(size=(len(vertices), 1))) * size
+        bodies.append(ba.RigidBody(name, ba.Polyhedron(lumps * u.m, faces), mass=mass * u.kg))
+    return bodies
+
+
 def stone() -> ba.RigidBody:
     """A box that is heavier at one end, so that it looks like itself from nowhere else."""
     vertices, faces = solids.box((-300.0, -200.0, -150.0), (300.0, 200.0, 150.0))
@@ -58,6 +68,7 @@ MODELS = {
     "Multipole 8 clouds": lambda: ba.System(clouds(), gravity=ba.Multipole(8)),
     "PointPairs clouds": lambda: ba.System(clouds(), gravity=ba.PointPairs()),
     "PointPairs dumbbells": lambda: ba.System(dumbbells(), gravity=ba.PointPairs()),
+    "PolyhedronPair": lambda: ba.System(polyhedra(), gravity=ba.PolyhedronPair(1e-10)),
     "PolyhedronPoint": lambda: ba.System([stone(), ball()], gravity=ba.PolyhedronPoint()),
     "PolyhedronPoint, the point first": lambda: ba.System([ball(), stone()], gravity=ba.PolyhedronPoint()),
     "EllipsoidPair": lambda: ba.System(ellipsoids(), gravity=ba.EllipsoidPair()),
@@ -66,6 +77,7 @@ MODELS = {
     "Adaptive": lambda: ba.System(ellipsoids(), gravity=ba.Adaptive(accuracy=3e-4, far=ba.SecondDegree())),
     "PairPotential": lambda: ba.System(ellipsoids(), gravity=ba.PairPotential(repelled, [3e12, 4e15])),
 }
+ROUNDOFF = {"PolyhedronPair": 1e-13}  # of U at 1500 m, where it is more than a few roundings: as the square of distance
 SWAPPABLE = [name for name in MODELS if name != "PairPotential"]
 
 
@@ -135,12 +147,11 @@ def test_swapping_the_bodies(name: str) -> None:
     for x, r in configurations(5):
         one = system.mutual_gravity(x * u.m, r)
         two = swapped.mutual_gravity(-(r.T @ x) * u.m, r.T)
-        assert two.energy.value == pytest.approx(one.energy.value, rel=1e-14)
-        scale = np.linalg.norm(one.gradient.value)
-        np.testing.assert_allclose(r @ two.gradient.value, -one.gradient.value, atol=1e-13 * scale)
-        np.testing.assert_allclose(
-            r @ two.torque_on_primary.value, one.torque_on_secondary.value, atol=1e-13 * scale * 1500
-        )
+        roundoff = ROUNDOFF.get(name, 1e-14)
+        assert two.energy.value == pytest.approx(one.energy.value, rel=roundoff)
+        scale = 10 * roundoff * np.linalg.norm(one.gradient.value)
+        np.testing.assert_allclose(r @ two.gradient.value, -one.gradient.value, atol=scale)
+        np.testing.assert_allclose(r @ two.torque_on_primary.value, one.torque_on_secondary.value, atol=scale * 1500)
 
 
 @pytest.mark.parametrize("name", SWAPPABLE)
@@ -150,7 +161,7 @@ def test_far_away_it_is_a_point_mass(name: str) -> None:
     x, r = configurations(1)[0]
     errors = [energy(system, x * far, r) / energy(point, x * far, r) - 1 for far in (10.0, 100.0)]
     assert abs(errors[0]) < 1e-2
-    assert errors[1] == pytest.approx(errors[0] / 100, rel=0.1, abs=1e-14)
+    assert errors[1] == pytest.approx(errors[0] / 100, rel=0.1, abs=1e4 * ROUNDOFF.get(name, 1e-18))
 
 
 def test_second_degree_is_the_limit_of_point_pairs() -> None:
