@@ -81,7 +81,7 @@ def test_what_it_cannot_take() -> None:
         pair([1, 1, 1e-4], [1, 1, 1e-4])
     disc = ba.RigidBody("A", ba.Ellipsoid(1 * u.m, 1 * u.m, 0.5 * u.m), mass=1 * u.kg)
     rods = ba.RigidBody("rods", ba.Dumbbell(1 * u.m, 0.1 * u.m), mass=1 * u.kg)
-    with pytest.raises(InputError, match="rods is a Dumbbell, which is no ellipsoid"):
+    with pytest.raises(InputError, match="rods has the shape Dumbbell, which is no ellipsoid"):
         ba.System([disc, rods], ba.EllipsoidPair())
     heavy = ba.RigidBody("core", disc.shape, mass=1 * u.kg, inertia=[1, 1, 1.5] * u.kg * u.m**2)
     with pytest.raises(InputError, match="core was given an inertia of its own"):

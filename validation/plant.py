@@ -139,7 +139,7 @@ def attempt(name: str, cases: Sequence[str]) -> Sight:
             raise InputError(f"the copy in {package} is not what runs, but {found.stdout.strip()}")
         command = [sys.executable, "-m", "validation", "--quick", "-o", str(Path(folder) / "report"), *cases]
         result = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-    failed = [line.split()[1] for line in result.stdout.splitlines() if line.startswith("FAIL")]
+    failed = [line.split()[1] for line in result.stdout.splitlines() if line.startswith(("FAIL", "ERROR"))]
     return Sight(name, failed, result.stdout + result.stderr, result.returncode == 0)
 
 
