@@ -140,8 +140,10 @@ def test_layers_are_added_up() -> None:
 
 
 def test_on_several_cores_it_is_the_same() -> None:
-    one, two = (values(ba.PolyhedronPair(1e-6, parallel=parallel)) for parallel in (False, True))
-    assert apart(two, one) < 1e-6
+    for distance in (0.8, 1.5, 10.0):
+        x = X * distance
+        one, two = (values(ba.PolyhedronPair(1e-5, parallel=parallel), x) for parallel in (False, True))
+        assert apart(two, one, x) < 1e-12
 
 
 def test_a_run_conserves_energy_with_the_square_of_the_step() -> None:

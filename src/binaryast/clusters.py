@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from binaryast.kernels.mutual import polyhedra
+from binaryast.kernels.selection import select
 from binaryast.units import Floats, Indices
 
 # Rules for triangles, of even degrees: in each line the weight of a point of an orbit, and two of the three
@@ -32,7 +33,7 @@ ORBITS: dict[int, list[tuple[float, float, float]]] = {
 }
 FROM = {6: 1e-4, 8: 0.0}  # from which accuracy on a degree is the fastest, as measured
 SCALE = 0.007  # the factor of the estimated error: the largest error of dU/dX that was measured, near contact, over it
-EQUAL = 1e-13  # a node whose share in telling polynomials apart is below that of the first by this tells nothing new
+EQUAL = 1e-13  # a node that tells polynomials apart by less than this, over the first one, is not needed
 
 
 class Surface(NamedTuple):
@@ -76,17 +77,14 @@ def polynomials(points: Floats, degree: int) -> Floats:
 
 def reduced(rule: Rule, degree: int) -> Rule:
     """Return a rule of fewer nodes with the same integrals of all polynomials up to a degree."""
-    from scipy.linalg import qr, solve_triangular
-
     low, high = rule.nodes.min(axis=0), rule.nodes.max(axis=0)
     values = polynomials((2 * rule.nodes - low - high) / (high - low).max(), degree)
     if values.shape[0] <= values.shape[1]:
         return rule
-    q, r, order = qr(values.T, mode="economic", pivoting=True)
-    sizes = np.abs(np.diag(r))
-    count = int(np.sum(sizes > EQUAL * sizes[0]))
-    integrals = q[:, :count].T @ (values.T @ rule.weights)
-    return Rule(rule.nodes[order[:count]], solve_triangular(r[:count, :count], integrals))
+    chosen, weights = np.zeros(values.shape[1], dtype=np.int64), np.zeros((values.shape[1], 3))
+    sums = np.ascontiguousarray(rule.weights.T @ values)
+    count = select(chosen, weights, np.ascontiguousarray(values), sums, EQUAL)
+    return Rule(rule.nodes[chosen[:count]], weights[:count])
 
 
 class Tree:

@@ -36,7 +36,7 @@ class PolyhedronPair(Gravity):
         The error of dU/dX over its size, and of M over |X| |dU/dX|, that is aimed at; that of U is smaller. From 1e-12
         to 0.01.
     parallel : bool
-        Whether each evaluation is shared out to the cores, which pays for meshes of thousands of faces. Such a system
+        Whether each evaluation is shared out to the cores, with the same sum but for its round-off. Such a system
         must not be run from several threads at once, for which not every machine's threads are made.
 
     Raises

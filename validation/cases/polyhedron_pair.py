@@ -287,6 +287,7 @@ def day_picture(times: np.ndarray, runs: list[Day]) -> Picture:
     for i, day in enumerate(runs[:-1]):
         apart = np.linalg.norm(day.where - runs[-1].where, axis=1)
         drawing.curve(ax, times[1:], apart[1:], f"{day.name}: {day.cost:.0f} us a step", i)
+    ax.set_ylim(top=30 * ax.get_ylim()[1])
     drawing.legend(ax)
     caption = "1999 KW4 with 500 and 200 faces: what the multipole leaves out, and what the accuracy of surfaces does."
     return Picture("polyhedron-pair-day", figure, caption)

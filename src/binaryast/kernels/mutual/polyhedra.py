@@ -216,25 +216,36 @@ def faces(p: Array, a: int, b: int, x: Vector, r: Matrix) -> PairGravity:
     return k * u, k * gx, k * gy, k * gz, k * mx + n[0] * u, k * my + n[1] * u, k * mz + n[2] * u
 
 
+@jit()
+def as_it_is(p: Array, a: int, b: int, x: Vector, r: Matrix) -> tuple[float, float, Vector, Vector]:
+    """Return how much of a pair of elements counts as it is, see `share`, its slope, the centres' d, and the arm."""
+    arm = rotate(r, (p[a], p[a + 1], p[a + 2]))
+    d = (x[0] + arm[0] - p[b], x[1] + arm[1] - p[b + 1], x[2] + arm[2] - p[b + 2])
+    s, slope = share(p, p[a + CHARGE] * p[b + CHARGE], p[a + RADIUS] + p[b + RADIUS], dot(d, d))
+    return s, slope, d, arm
+
+
+@jit()
+def first_has_parts(p: Array, a: int, b: int) -> bool:
+    """Whether of two elements, not both of them faces, the first is to be replaced by its parts: it is the larger."""
+    return bool(p[b + PARTS] == 0.0 or (p[a + PARTS] > 0.0 and p[a + RADIUS] >= p[b + RADIUS]))
+
+
 @jit(RESULT(ARRAY, types.int64, types.int64, VECTOR, TRIANGLE))
 def elements(p: Array, a: int, b: int, x: Vector, r: Matrix) -> PairGravity:
     """Return the sum over two elements: by their rules, or by those of the parts of the larger one."""
-    arm = rotate(r, (p[a], p[a + 1], p[a + 2]))
-    d = (x[0] + arm[0] - p[b], x[1] + arm[1] - p[b + 1], x[2] + arm[2] - p[b + 2])
-    s1, s2 = p[a + RADIUS], p[b + RADIUS]
-    s, slope = share(p, p[a + CHARGE] * p[b + CHARGE], s1 + s2, dot(d, d))
+    s, slope, d, arm = as_it_is(p, a, b, x, r)
     whole = nodes(p, a, b, x, r) if s > 0.0 else ZERO
     if s == 1.0:
         return whole
-    n1, n2 = int(p[a + PARTS]), int(p[b + PARTS])
     parts = ZERO
-    if n1 == 0 and n2 == 0:
+    if p[a + PARTS] == 0.0 and p[b + PARTS] == 0.0:
         parts = faces(p, a, b, x, r)
-    elif n2 == 0 or (n1 > 0 and s1 >= s2):
-        for k in range(n1):
+    elif first_has_parts(p, a, b):
+        for k in range(int(p[a + PARTS])):
             parts = plus(parts, elements(p, int(p[a + PARTS_AT]) + ELEMENT * k, b, x, r))
     else:
-        for k in range(n2):
+        for k in range(int(p[b + PARTS])):
             parts = plus(parts, elements(p, a, int(p[b + PARTS_AT]) + ELEMENT * k, x, r))
     return blended(whole, parts, s, slope, d, arm)
 
