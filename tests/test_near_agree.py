@@ -5,6 +5,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import binaryast as ba
+from binaryast.gravity import Gravity
 from tests.solids import icosphere
 
 AXES = {"A": (420.0, 400.0, 330.0), "B": (100.0, 80.0, 60.0)}  # m
@@ -13,7 +14,7 @@ PLACE = np.array([510.0, 60.0, -40.0]) * u.m  # some ten metres from contact
 ATTITUDE = Rotation.from_euler("zxz", [0.4, 0.7, -1.1]).as_matrix()
 
 
-def attraction(shapes: list, gravity: ba.gravity.Gravity) -> np.ndarray:
+def attraction(shapes: list, gravity: Gravity) -> np.ndarray:
     """Return U and dU/dX, each over its size at the first body's mass."""
     bodies = [ba.RigidBody(name, shape, density=DENSITY) for name, shape in zip(AXES, shapes, strict=True)]
     found = ba.System(bodies, gravity=gravity).mutual_gravity(PLACE, ATTITUDE)

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 import binaryast as ba
+from binaryast.gravity import Gravity
 from validation import drawing, meshes, methods, truncation
 from validation.case import Case, Check, Effort, Findings, Picture
 from validation.meshes import Mesh
@@ -27,7 +28,7 @@ DEGREES = (2, 4, 8)
 DISTANCES = np.array([2.6, 4.0, 6.0, 9.0])  # m
 
 
-def system(one: Mesh, two: Mesh, gravity: ba.gravity.Gravity) -> ba.System:
+def system(one: Mesh, two: Mesh, gravity: Gravity) -> ba.System:
     """Return two polyhedra with G m1 m2 = 1, the first as the primary."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ba.errors.DensityWarning)  # G m1 m2 = 1 weighs what no rock does
