@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 import binaryast as ba
 from binaryast import clusters
 from binaryast.errors import InputError, ScenarioError
+from binaryast.gravity import Gravity
 from binaryast.scenario import loads
 from tests.solids import Solid, box, icosphere
 from tests.test_polyhedron import SHAPES, with_shapes
@@ -35,7 +36,7 @@ PRIMARY = body("A", rough(1, (5.0, 4.0, 3.0), 1))
 SECONDARY = body("B", rough(1, (3.0, 2.5, 2.0), 2))
 
 
-def values(gravity: ba.gravity.Gravity, x: np.ndarray = X, r: np.ndarray = R) -> np.ndarray:
+def values(gravity: Gravity, x: np.ndarray = X, r: np.ndarray = R) -> np.ndarray:
     return np.array(ba.System([PRIMARY, SECONDARY], gravity).attraction(x, r))
 
 

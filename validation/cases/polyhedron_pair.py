@@ -96,7 +96,7 @@ def box_checks(found: Promise) -> list[Check]:
         Check(
             "boxes turned: largest error of U, dU/dX and M with an accuracy of 1e-10",
             found.turned[-1].max(),
-            2e-10,
+            1e-10,
             "what the oracle's 12 nodes for each edge leave; what the rules of the surfaces leave",
         ),
     ]
