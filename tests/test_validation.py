@@ -14,7 +14,7 @@ from validation.runner import Outcome
 
 GUBAS = Path(__file__).parents[2] / "shared" / "gubas"
 LOOSEST = 10  # a tolerance over the error that is measured
-ELSEWHERE = 3  # times that for round-off, which differs from machine to machine
+ELSEWHERE = 30  # times that for round-off: on another machine it may happen to cancel
 
 
 @pytest.fixture(scope="module")
