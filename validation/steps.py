@@ -5,8 +5,11 @@ import numpy as np
 
 import binaryast as ba
 from binaryast.equations.legendre import Snapshot
+from binaryast.integrators import Stepping
 from binaryast.outcome import Watch
 from binaryast.working import Working
+
+SECOND_ORDER = ba.LGVI(1 * u.s)
 
 
 def snapshot(w: Working, time: float = 0.0) -> Snapshot:
@@ -15,18 +18,29 @@ def snapshot(w: Working, time: float = 0.0) -> Snapshot:
     return Snapshot(motion.velocity[0], motion.spin[0], motion.position[0], motion.attitude[0])
 
 
-def take_steps(w: Working, h: float, count: int, *, save: int = 0, touching: bool = False) -> np.ndarray:
+def take_steps(
+    w: Working, h: float, count: int, *, integrator: Stepping = SECOND_ORDER, save: int = 0, touching: bool = False
+) -> np.ndarray:
     """Take watched steps of h [s], in place; return what was watched.
 
-    ``save`` saves every so many steps, ``touching`` looks for contact.
+    The integrator's own step does not matter. ``save`` saves every so many steps, ``touching`` looks for contact.
     """
     watch = Watch()
     watch.begin(w.measure(w.state, w.constants), 0.0)
-    kernel = ba.LGVI(1 * u.s).kernel(inertial=w.inertial)
+    kernel = integrator.kernel(inertial=w.inertial)
     stride = save or count
     rows = np.empty((count // stride, w.row_size))
     surfaces = w.surfaces if touching else np.zeros_like(w.surfaces)
-    arrays = (w.attraction, w.parameters, w.constants, surfaces, w.state, w.before, watch.array)
+    arrays = (
+        integrator.shares.shares,
+        w.attraction,
+        w.parameters,
+        w.constants,
+        surfaces,
+        w.state,
+        w.before,
+        watch.array,
+    )
     status = w.advance(kernel, w.measure, w.touching, *arrays, h, count, stride, rows)
     if status != 0:
         raise RuntimeError(f"the loop of steps ended with status {status}")

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         SecondDegree,
         pair_potential,
     )
-    from binaryast.integrators import LGVI, RungeKutta
+    from binaryast.integrators import LGVI, KeplerSplitting, RungeKutta, Splitting
     from binaryast.layered import Layered
     from binaryast.orbits import Orbit
     from binaryast.polyhedron import Polyhedron
@@ -49,6 +49,7 @@ _HOMES = {
     "EllipsoidPair": "gravity",
     "GravityField": "fields",
     "InertiaIntegrals": "coefficients",
+    "KeplerSplitting": "integrators",
     "LGVI": "integrators",
     "Layered": "layered",
     "Multipole": "gravity",
@@ -69,6 +70,7 @@ _HOMES = {
     "SecondDegree": "gravity",
     "Shape": "shapes",
     "Sphere": "shapes",
+    "Splitting": "integrators",
     "State": "state",
     "StokesCoefficients": "coefficients",
     "Surface": "surfaces",
@@ -92,6 +94,7 @@ __all__ = [
     "EllipsoidPair",
     "GravityField",
     "InertiaIntegrals",
+    "KeplerSplitting",
     "Layered",
     "Multipole",
     "MutualGravity",
@@ -111,6 +114,7 @@ __all__ = [
     "SecondDegree",
     "Shape",
     "Sphere",
+    "Splitting",
     "State",
     "StokesCoefficients",
     "Surface",

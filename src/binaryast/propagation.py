@@ -5,7 +5,7 @@ import warnings
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
-from math import pi, sqrt
+from math import inf, pi, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -70,7 +70,8 @@ def propagate(
     Raises
     ------
     StepError
-        For a step longer than the run, or one that turns a body by h Omega >= 1, for which (128) has no solution.
+        For a step longer than the run, or one that turns a body so far that (128) has no solution: by h Omega >= 1 at
+        order 2.
     ContactError
         Where the bodies overlap at the start.
     InputError
@@ -79,8 +80,8 @@ def propagate(
     Warns
     -----
     StepWarning
-        For a step above 1/20 of the fastest turn or of the time of an orbit, and where the energy was wrong by more
-        than 1 % of its size.
+        For a step, or a longest part of one, above 1/20 of the fastest turn (of a variational integrator) or of the
+        time of an orbit, and where the energy was wrong by more than 1 % of its size.
     GravityWarning
         Where gravity is cut at a degree whose next terms reach more than 1e-3 of G m1 m2/r at a saved row.
     EndWarning
@@ -112,10 +113,10 @@ def _run(
         segments = schedule(end, integrator.step.value, interval)
         longest = max(segment.step for segment in segments)
         _check_turns(system, state, integrator, longest)
-        _check_orbits(system, state, longest)
+        _check_orbits(system, state, integrator, longest)
         return SteppedRun(system, state, integrator, segments)
     if not isinstance(integrator, RungeKutta):
-        raise InputError(f"integrator: expected ba.LGVI or ba.RungeKutta, got {brief(integrator)}")
+        raise InputError(f"integrator: expected one of binaryast's, such as ba.LGVI, got {brief(integrator)}")
     from binaryast.solving import SolvedRun  # a third of a second, needed only here
 
     return SolvedRun(system, state, integrator, end, interval)
@@ -135,27 +136,33 @@ def _check_kinds(system: Any, state: Any, integrator: Any) -> None:
     for body, spin in zip(system.bodies, state.si.spin, strict=True):
         if body.is_point and np.any(spin):
             raise InputError(f"state: {body.name} is a point, which does not turn: expected a spin of zero, got {spin}")
-    integrator.is_inertial(len(system.bodies))
+    integrator.check_start(system, state)
 
 
 def _check_turns(system: System, state: State, integrator: Stepping, step: float) -> None:
-    """Refuse a step without a solution, and warn of a doubtful one."""
+    """Refuse a step without a solution, and warn of a doubtful one; exact rotation knows neither."""
+    if integrator.largest_turn == inf:
+        return
     for body, spin in zip(system.bodies, np.linalg.norm(state.si.spin, axis=1), strict=True):
-        turn = step * spin
-        if turn >= integrator.largest_turn:
+        if step * spin >= integrator.largest_turn:
             raise turn_error(body.name, float(spin), integrator, step)
+        turn = step * integrator.shares.longest * spin
         if turn > DOUBTFUL_TURN:
+            lead = f"its attitude will run ahead by about {turn**3 / 6:.2g} rad a step"
+            part = "" if integrator.order == 2 else f"the longest part, {turn / spin:.3g} s, of "
             warnings.warn(
-                f"a step of {step:g} s turns {body.name} by {turn:.2g} rad: its attitude will run ahead by "
-                f"about {turn**3 / 6:.2g} rad a step; {0.05 * step / turn:.3g} s would turn it by 0.05 rad",
+                f"{part}a step of {step:g} s turns {body.name} by {turn:.2g} rad: "
+                f"{lead if integrator.order == 2 else 'its attitude may be far off'}; {0.05 * step / turn:.3g} s would "
+                "turn it by 0.05 rad, and ba.Splitting turns it exactly",
                 StepWarning,
                 stacklevel=4,
             )
 
 
-def _check_orbits(system: System, state: State, step: float) -> None:
+def _check_orbits(system: System, state: State, integrator: Stepping, step: float) -> None:
     """Warn of a step that is long beside the time in which two bodies fall or go round each other, as they are now."""
     position, velocity, _, _ = state.si
+    longest = integrator.shares.longest
     for pair in system.pairs:
         x, v = (array[pair.secondary] - array[pair.primary] for array in (position, velocity))
         distance = float(np.linalg.norm(x))
@@ -163,11 +170,13 @@ def _check_orbits(system: System, state: State, step: float) -> None:
             continue
         gm = system.bodies[pair.primary].si.gm + system.bodies[pair.secondary].si.gm
         rate = max(sqrt(gm / distance**3), float(np.linalg.norm(np.cross(x, v))) / distance**2)
-        if step * rate > DOUBTFUL_TURN:
+        if longest * step * rate > DOUBTFUL_TURN:
+            part = "" if integrator.order == 2 else f", with parts of {longest * step:.3g} s,"
             warnings.warn(
-                f"a step of {step:g} s is long beside the {2 * pi / rate:.3g} s in which, as they are at the start, "
-                f"{system.names[pair.secondary]} would go once round {system.names[pair.primary]}; {0.05 / rate:.3g} s "
-                "would be 0.05 rad of it. A light body's error does not show in the energy of all",
+                f"a step of {step:g} s{part} is long beside the {2 * pi / rate:.3g} s in which, as they are at the "
+                f"start, {system.names[pair.secondary]} would go once round {system.names[pair.primary]}; "
+                f"{0.05 / rate / longest:.3g} s would be 0.05 rad of it. A light body's error does not show in the "
+                "energy of all",
                 StepWarning,
                 stacklevel=4,
             )

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from math import pi
+from math import inf, pi
 
 import numpy as np
 
@@ -23,11 +23,15 @@ CHUNK_SECONDS = 0.1  # between two looks at the keyboard
 
 def turn_error(name: str, spin: float, integrator: Stepping, step: float) -> StepError:
     """Return the error of a step that turns a body too far."""
-    largest = integrator.largest_turn / spin
+    turned = (
+        f"step: {name} spins at {spin:.6g} rad/s (once in {2 * pi / spin / 3600:.4g} h), h Omega = {step * spin:.4g}"
+    )
+    if integrator.largest_turn == inf:
+        return StepError(f"{turned}: more turns in a step of {step:g} s than can be followed: give a shorter one")
+    scheme = "" if integrator.order == 2 else f" at order {integrator.order} ({integrator.shares.name})"
     return StepError(
-        f"step: {name} spins at {spin:.6g} rad/s (once in {2 * pi / spin / 3600:.4g} h), h Omega = {step * spin:.4g}; "
-        f"the implicit equation (128) has a solution only below {integrator.largest_turn:g}: the step must be below "
-        f"{largest:.6g} s, got {step:g} s"
+        f"{turned}; the implicit equation (128) has a solution only below {integrator.largest_turn:.4g}{scheme}: the "
+        f"step must be below {integrator.largest_turn / spin:.6g} s, got {step:g} s; ba.Splitting has no such limit"
     )
 
 
@@ -37,7 +41,7 @@ class SteppedRun:
     def __init__(self, system: System, state: State, integrator: Stepping, segments: list[Segment]) -> None:
         self.system, self.integrator, self.segments = system, integrator, segments
         inertial = integrator.is_inertial(len(system.bodies))
-        self.kernel = integrator.kernel(inertial=inertial)
+        self.kernel, self.shares = integrator.kernel(inertial=inertial), integrator.shares.shares
         self.working = working.of(system, state, inertial=inertial)
         self.end = sum(segment.steps * segment.step for segment in segments)
         self.watch = Watch()
@@ -103,6 +107,7 @@ class SteppedRun:
                 self.kernel,
                 w.measure,
                 w.touching,
+                self.shares,
                 w.attraction,
                 w.parameters,
                 w.constants,

@@ -7,11 +7,13 @@ from validation.steps import snapshot, take_steps
 from validation.systems import four_bodies, tumbling_pair, wobbling_pair
 
 import binaryast as ba
-from binaryast import working
+from binaryast import schemes, working
 from binaryast.kernels import loop, status
-from binaryast.kernels.bodies import layout, lgvi
+from binaryast.kernels.bodies import layout, lgvi, stages
 from binaryast.kernels.bodies import loop as bodies_loop
 from tests.conftest import attitude_angle
+
+SECOND_ORDER = schemes.LEAPFROG.shares
 
 
 @pytest.mark.parametrize(
@@ -73,10 +75,19 @@ def test_a_step_without_a_solution_leaves_the_state_as_it_was() -> None:
     system, state = four_bodies()
     w = working.of(system, state)
     before = w.state.copy()
-    assert lgvi.step(w.state, w.constants, w.attraction, w.parameters, 5000.0) == status.NO_ROTATION
+    assert lgvi.step(w.state, w.constants, SECOND_ORDER, w.attraction, w.parameters, 5000.0) == status.NO_ROTATION
     assert np.any(w.state != before)
     w.state[:] = before
-    arrays = (w.attraction, w.parameters, w.constants, w.surfaces, w.state, w.before, np.zeros(loop.WATCH_SIZE))
+    arrays = (
+        SECOND_ORDER,
+        w.attraction,
+        w.parameters,
+        w.constants,
+        w.surfaces,
+        w.state,
+        w.before,
+        np.zeros(loop.WATCH_SIZE),
+    )
     rows = np.empty((1, w.row_size))
     assert w.advance(lgvi.step, w.measure, w.touching, *arrays, 5000.0, 10, 10, rows) == status.NO_ROTATION
     np.testing.assert_array_equal(w.state, before)
@@ -105,7 +116,7 @@ def test_one_compilation_serves_any_number_of_pairs() -> None:
         gravity = [models[i % 3] for i in range(count * (count - 1) // 2)]
         w = working.of(ba.System(bodies, gravity=gravity), state, inertial=True)
         take_steps(w, 10.0, 20)
-    assert [len(kernel.overloads) for kernel in (bodies_loop.advance, lgvi.step, lgvi.exert)] == [1, 1, 1]
+    assert [len(kernel.overloads) for kernel in (bodies_loop.advance, lgvi.step, stages.exert)] == [1, 1, 1]
 
 
 def test_a_point_feels_what_it_should_and_does_not_turn() -> None:

@@ -7,11 +7,13 @@ from validation.steps import snapshot, take_steps
 from validation.systems import tumbling_pair, wobbling_pair
 
 import binaryast as ba
-from binaryast import working
+from binaryast import schemes, working
 from binaryast.equations.legendre import Snapshot
 from binaryast.kernels import loop, status
 from binaryast.kernels.pair import lgvi
 from tests.conftest import attitude_angle
+
+SECOND_ORDER = schemes.LEAPFROG.shares
 
 
 def printed(system: ba.System, state: ba.State, h: float, count: int) -> Snapshot:
@@ -60,7 +62,7 @@ def test_the_state_is_untouched_where_a_step_has_no_solution() -> None:
     system, state = tumbling_pair()
     w = working.of(system, state)
     before = w.state.copy()
-    assert lgvi.step(w.state, w.constants, w.attraction, w.parameters, 5000.0) == status.NO_ROTATION
+    assert lgvi.step(w.state, w.constants, SECOND_ORDER, w.attraction, w.parameters, 5000.0) == status.NO_ROTATION
     np.testing.assert_array_equal(w.state, before)
 
 

@@ -1,9 +1,12 @@
-"""The discrete free rotation of one body: the half of the variational integrator's step that turns it."""
+"""The free rotation of one body over a time: the variational integrator's, and the exact one."""
 
 from binaryast.kernels.compensated import add_vector, turn_quaternion
 from binaryast.kernels.implicit import solve_cayley
 from binaryast.kernels.jit import Quaternion, Vector, jit
+from binaryast.kernels.rotor import free_turn, pieces
 from binaryast.kernels.so3 import cayley, cross
+
+Turned = tuple[Quaternion, Quaternion, Vector, Vector, bool]
 
 
 @jit()
@@ -17,12 +20,25 @@ def turn_momentum(p: Vector, f: Quaternion) -> Vector:
 
 
 @jit()
-def turn(
+def turn_variationally(
     q: Quaternion, rq: Quaternion, p: Vector, rp: Vector, inverse: Vector, ratios: Vector, h: float
-) -> tuple[Quaternion, Quaternion, Vector, Vector, bool]:
-    """Turn one body freely for h; whether the implicit equation had a solution is the last value."""
+) -> Turned:
+    """Turn one body freely for h by the discrete equation; whether it had a solution is the last value."""
     c, iterations = solve_cayley(inverse, ratios, (h * p[0], h * p[1], h * p[2]))  # (95), (123), (124)
     f = cayley(c)
     q, rq = turn_quaternion(q, rq, f)  # (97), (122), (127)
     p, rp = add_vector(p, rp, 1.0, turn_momentum(p, f))  # the F^T of (96), (120), (121)
     return q, rq, p, rp, iterations >= 0
+
+
+@jit()
+def turn_exactly(
+    q: Quaternion, rq: Quaternion, p: Vector, rp: Vector, inverse: Vector, ratios: Vector, h: float
+) -> Turned:
+    """Turn one body freely for h as Euler's equations say; the last value is false where h is beyond all reason."""
+    count = pieces(p, inverse, h)
+    for _ in range(count):
+        f = free_turn(p, inverse, h / count)
+        q, rq = turn_quaternion(q, rq, f)
+        p, rp = add_vector(p, rp, 1.0, turn_momentum(p, f))
+    return q, rq, p, rp, count > 0

@@ -54,8 +54,8 @@ PAIR_POINTERS = types.Array(types.int64, 1, "C")
 
 
 def step_signature(attraction: Any) -> Any:
-    """Return the signature of one step of h: status from (state, constants, potential(s), parameters, h)."""
-    return types.int64(ARRAY, ARRAY, attraction, ARRAY, types.float64)
+    """Return the signature of one step of h: status from (state, constants, scheme, potential(s), parameters, h)."""
+    return types.int64(ARRAY, ARRAY, ARRAY, attraction, ARRAY, types.float64)
 
 
 OPTIONS = {"nogil": True, "error_model": "numpy"}  # numpy: a division by zero gives inf, without a branch for each

@@ -34,6 +34,7 @@ def loop_signature(attraction: Any) -> Any:
         types.FunctionType(step_signature(attraction)),
         types.FunctionType(MEASURE),
         types.FunctionType(TOUCH),
+        ARRAY,  # scheme
         attraction,
         ARRAY,  # parameters
         ARRAY,  # constants
@@ -52,6 +53,7 @@ def advance(
     step: Callable[..., int],
     measure: Callable[..., Measures],
     touching: Callable[..., int],
+    scheme: Array,
     attraction: Any,
     parameters: Array,
     constants: Array,
@@ -74,7 +76,7 @@ def advance(
     for _ in range(count):
         for i in range(before.size):
             before[i] = state[i]
-        status = step(state, constants, attraction, parameters, h)
+        status = step(state, constants, scheme, attraction, parameters, h)
         if status != COMPLETED:
             for i in range(before.size):
                 state[i] = before[i]

@@ -5,9 +5,9 @@ from scipy.spatial.transform import Rotation
 
 from binaryast.kernels.bodies import layout
 from binaryast.kernels.bodies.contact import touching
-from binaryast.kernels.bodies.lgvi import exert
 from binaryast.kernels.bodies.loop import advance
 from binaryast.kernels.bodies.measure import measure
+from binaryast.kernels.bodies.stages import exert
 from binaryast.kernels.pointers import table_of
 from binaryast.state import State
 from binaryast.system import System

@@ -5,9 +5,9 @@ from scipy.spatial.transform import Rotation
 
 from binaryast.kernels.pair import layout
 from binaryast.kernels.pair.contact import touching
-from binaryast.kernels.pair.lgvi import prepare
 from binaryast.kernels.pair.loop import advance
 from binaryast.kernels.pair.measure import measure
+from binaryast.kernels.pair.stages import prepare
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.units import Floats
@@ -33,6 +33,7 @@ class WorkingPair(Working):
         self.attraction, self.parameters = system.pairs[0].potential, system.parameters
         self.constants = np.empty(layout.CONSTANTS_SIZE)
         self.constants[layout.REDUCED_MASS] = system.reduced_mass
+        self.constants[layout.GM] = sum(body.si.gm for body in system.bodies)
         self.state = np.zeros(layout.STATE_SIZE)
         self.before = np.zeros(3)  # the step itself spoils nothing
         position, velocity, attitude, spin = state.si

@@ -1,140 +1,16 @@
 """The production step of the Lie group variational integrator for n bodies: the map (93)-(97), to the last digit.
 
-It is the printed map in other variables: velocities for linear momenta, attitudes as unit quaternions, and (95) solved
-in Cayley coordinates. A point has no attitude: it is only moved.
+It is the printed map in other variables: half a kick gives the brackets of (93)-(96), the drift is (93) with (95)
+solved in Cayley coordinates, (97) and the F^T of (96), and the other half of the kick completes (94) and (96). Higher
+orders are compositions of such steps of different lengths.
 """
 
-from numba import types
-
-from binaryast.kernels.arrays import matrix_at, put_quaternion, put_vector, quaternion_at, vector_at
-from binaryast.kernels.attraction import attract
-from binaryast.kernels.bodies.layout import (
-    BEGIN,
-    END,
-    INVERSE,
-    IS_POINT,
-    MASS,
-    PRIMARY,
-    RATIOS,
-    SECONDARY,
-    attitude_of,
-    body_constants,
-    gradient_of,
-    momentum_of,
-    pair_constants,
-    potential_of,
-    remainder_of,
-    torque_of,
-    velocity_of,
-)
-from binaryast.kernels.compensated import add_vector
-from binaryast.kernels.free_rotation import turn
-from binaryast.kernels.jit import ARRAY, PAIR_POINTERS, Array, Vector, jit, step_signature
-from binaryast.kernels.pointers import pointer_at
-from binaryast.kernels.status import COMPLETED, NO_ROTATION, NOT_FINITE
-
-
-@jit()
-def increase(state: Array, at: int, remainder: int, scale: float, increment: Vector) -> Vector:
-    """Add to a vector of the state, with its remainder; return the sum."""
-    v, rv = add_vector(vector_at(state, at), vector_at(state, remainder + at), scale, increment)
-    put_vector(state, at, v)
-    put_vector(state, remainder + at, rv)
-    return v
-
-
-@jit()
-def add(state: Array, at: int, sign: float, increment: Vector) -> None:
-    """Add to a vector of the state."""
-    x, y, z = increment
-    state[at] += sign * x
-    state[at + 1] += sign * y
-    state[at + 2] += sign * z
-
-
-@jit(types.int64(ARRAY, ARRAY, types.float64))
-def half_kick_and_drift(state: Array, constants: Array, h: float) -> int:
-    """Take the first half of a step: all that comes before the potential at the new configuration."""
-    n = int(constants[0])
-    remainder = remainder_of(n)
-    for i in range(n):
-        body = body_constants(i)
-        to_velocity = -0.5 * h / constants[body + MASS]
-        gradient = vector_at(state, gradient_of(n) + 3 * i)
-        v = increase(state, velocity_of(n) + 3 * i, remainder, to_velocity, gradient)
-        increase(state, 3 * i, remainder, h, v)  # (93)
-        if constants[body + IS_POINT]:
-            continue
-        p_at, q_at = momentum_of(n) + 3 * i, attitude_of(n) + 4 * i
-        p = increase(state, p_at, remainder, 0.5 * h, vector_at(state, torque_of(n) + 3 * i))
-        q, rq, p, rp, solved = turn(
-            quaternion_at(state, q_at),
-            quaternion_at(state, remainder + q_at),
-            p,
-            vector_at(state, remainder + p_at),
-            vector_at(constants, body + INVERSE),
-            vector_at(constants, body + RATIOS),
-            h,
-        )  # (95), (97), the F^T of (96)
-        if not solved:
-            return NO_ROTATION + i
-        put_quaternion(state, q_at, q)
-        put_quaternion(state, remainder + q_at, rq)
-        put_vector(state, p_at, p)
-        put_vector(state, remainder + p_at, rp)
-    return COMPLETED
-
-
-@jit(types.int64(ARRAY, ARRAY, types.float64))
-def half_kick(state: Array, constants: Array, h: float) -> int:
-    """Take the last half of a step: what the potential at the new configuration adds."""
-    n = int(constants[0])
-    remainder = remainder_of(n)
-    total = state[potential_of(n)] - state[potential_of(n)]  # what is infinite or not a number spoils a sum
-    for i in range(n):
-        body = body_constants(i)
-        to_velocity = -0.5 * h / constants[body + MASS]
-        x = vector_at(state, 3 * i)
-        gradient = vector_at(state, gradient_of(n) + 3 * i)
-        v = increase(state, velocity_of(n) + 3 * i, remainder, to_velocity, gradient)  # (94)
-        total += x[0] + x[1] + x[2] + v[0] + v[1] + v[2]
-        if constants[body + IS_POINT]:
-            continue
-        torque = vector_at(state, torque_of(n) + 3 * i)
-        p = increase(state, momentum_of(n) + 3 * i, remainder, 0.5 * h, torque)  # (96)
-        total += p[0] + p[1] + p[2]
-    return COMPLETED if abs(total) < 1e300 else NOT_FINITE
-
-
-@jit(types.void(ARRAY, ARRAY, PAIR_POINTERS, ARRAY))
-def exert(state: Array, constants: Array, potentials: Array, parameters: Array) -> None:
-    """Put U, dU/dx_i and M_i of this configuration into the state: the sum over all pairs."""
-    n = int(constants[0])
-    for i in range(potential_of(n), remainder_of(n)):
-        state[i] = 0.0
-    for k in range(int(constants[1])):
-        pair = pair_constants(n, k)
-        two, one = int(constants[pair + PRIMARY]), int(constants[pair + SECONDARY])
-        x2, x1 = vector_at(state, 3 * two), vector_at(state, 3 * one)
-        u, gradient, torque_2, torque_1 = attract(
-            (x1[0] - x2[0], x1[1] - x2[1], x1[2] - x2[2]),
-            matrix_at(state, attitude_of(n) + 4 * two),
-            matrix_at(state, attitude_of(n) + 4 * one),
-            pointer_at(potentials, k),
-            parameters[int(constants[pair + BEGIN]) : int(constants[pair + END])],
-        )
-        state[potential_of(n)] += u
-        add(state, gradient_of(n) + 3 * one, 1.0, gradient)
-        add(state, gradient_of(n) + 3 * two, -1.0, gradient)
-        add(state, torque_of(n) + 3 * one, 1.0, torque_1)
-        add(state, torque_of(n) + 3 * two, 1.0, torque_2)
+from binaryast.kernels.bodies.stages import take_stages
+from binaryast.kernels.free_rotation import turn_variationally
+from binaryast.kernels.jit import PAIR_POINTERS, Array, jit, step_signature
 
 
 @jit(step_signature(PAIR_POINTERS))
-def step(state: Array, constants: Array, potentials: Array, parameters: Array, h: float) -> int:
-    """Advance n bodies by h; where the step has no solution the state is spoilt, and the status says so."""
-    status = half_kick_and_drift(state, constants, h)
-    if status != COMPLETED:
-        return status
-    exert(state, constants, potentials, parameters)
-    return half_kick(state, constants, h)
+def step(state: Array, constants: Array, scheme: Array, potentials: Array, parameters: Array, h: float) -> int:
+    """Advance n bodies by h."""
+    return take_stages(turn_variationally, state, constants, scheme, potentials, parameters, h)

@@ -21,10 +21,12 @@ REMAINDER = 30  # + 0 .. 19: what rounding took from the motion
 STATE_SIZE = 50
 ROW_SIZE = 21  # what a saved row keeps: the motion and U
 
-# Constants: the reduced mass; for each body 1/I_i and (I_j - I_k)/I_i, cyclic, of its principal moments I.
+# Constants: the reduced mass and G (m1 + m2); for each body 1/I_i and (I_j - I_k)/I_i, cyclic, of its principal
+# moments I.
 REDUCED_MASS = 0
-INVERSE_2 = 1
-RATIOS_2 = 4
-INVERSE_1 = 7
-RATIOS_1 = 10
-CONSTANTS_SIZE = 13
+GM = 1
+INVERSE_2 = 2
+RATIOS_2 = 5
+INVERSE_1 = 8
+RATIOS_1 = 11
+CONSTANTS_SIZE = 14
