@@ -62,7 +62,7 @@ class Symbol:
 
 
 class SymbolLanes:
-    """What symbols offer besides arithmetic, see `binaryast.kernels.mutual.multipole.Lanes`."""
+    """What symbols offer besides arithmetic, see `binaryast.kernels.lanes.Lanes`."""
 
     def __init__(self, builder: Any) -> None:
         self.builder = builder
@@ -103,7 +103,8 @@ class SymbolLanes:
 
     def where_larger(self, a: Any, b: Any, one: Any, two: Any) -> Any:
         """Return ``one`` where a > b, ``two`` elsewhere."""
-        a, b, one, two = (as_value(self.builder, number, PAIR) for number in (a, b, one, two))
+        kind = PAIR if PAIR in map(_kind, (a, b, one, two)) else FLOAT
+        a, b, one, two = (as_value(self.builder, number, kind) for number in (a, b, one, two))
         return Symbol(self.builder, self.builder.select(self.builder.fcmp_ordered(">", a, b), one, two))
 
 
