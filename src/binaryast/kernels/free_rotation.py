@@ -1,18 +1,18 @@
 """The free rotation of bodies over a time, compiled: the variational integrator's, and the exact one."""
 
+from functools import partial
 from math import sqrt
 from typing import Any
 
 from numba import types
-from numba.core import cgutils
 from numba.extending import intrinsic
 
 from binaryast.kernels import rotor
 from binaryast.kernels.compensated import add_vector, turn_quaternion
-from binaryast.kernels.implicit import solve_cayley
+from binaryast.kernels.implicit import solve_both, solve_cayley
 from binaryast.kernels.jit import Quaternion, Vector, jit
 from binaryast.kernels.so3 import cayley, cross
-from binaryast.kernels.symbols import Symbol, SymbolLanes
+from binaryast.kernels.symbols import written_out, written_out_twice
 
 MOST_PARTS = 1e5  # of a drift
 
@@ -53,41 +53,23 @@ def turn_both_variationally(
     a2: Attitude, body_2: Body, a1: Attitude, body_1: Body, h: float
 ) -> tuple[Attitude, Attitude, bool, bool]:
     """Turn two bodies freely for h by the discrete equation; whether it had solutions are the last values."""
-    a2, solved_2 = turn_variationally(a2, body_2, h)
-    a1, solved_1 = turn_variationally(a1, body_1, h)
-    return a2, a1, solved_2, solved_1
+    p2, p1 = a2[2], a1[2]
+    g2, g1 = (h * p2[0], h * p2[1], h * p2[2]), (h * p1[0], h * p1[1], h * p1[2])
+    c2, c1, solved_2, solved_1 = solve_both(body_2[0], body_2[1], g2, body_1[0], body_1[1], g1)  # (124), (123)
+    return turned(a2, cayley(c2)), turned(a1, cayley(c1)), solved_2, solved_1
 
 
 @intrinsic  # type: ignore[untyped-decorator]
 def free_turn(_: Any, p: Any, inverse: Any, h: Any) -> Any:
     """Return the quaternion of the exact turn of one body: ``rotor.py`` written out."""
-
-    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        vectors = [[Symbol(builder, v) for v in cgutils.unpack_tuple(builder, value)] for value in values[:2]]
-        f = rotor.free_turn(SymbolLanes(builder), *vectors, Symbol(builder, values[2]))
-        return context.make_tuple(builder, QUATERNION, [part.value for part in f])
-
-    return QUATERNION(p, inverse, h), code
+    return QUATERNION(p, inverse, h), partial(written_out, rotor.free_turn)
 
 
 @intrinsic  # type: ignore[untyped-decorator]
-def free_turns(_: Any, p2: Any, inverse_2: Any, p1: Any, inverse_1: Any, h: Any) -> Any:
-    """Return the quaternions of the exact turns of two bodies: ``rotor.py`` written out for both side by side."""
+def free_turns(_: Any, p2: Any, p1: Any, inverse_2: Any, inverse_1: Any, h: Any) -> Any:
+    """Return the quaternions of the exact turns of two bodies, side by side."""
     both = types.UniTuple(QUATERNION, 2)
-
-    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        lanes = SymbolLanes(builder)
-        p2, inverse_2, p1, inverse_1 = (
-            [Symbol(builder, v) for v in cgutils.unpack_tuple(builder, value)] for value in values[:4]
-        )
-        vectors = ([lanes.pair(*parts) for parts in zip(*each, strict=True)] for each in ((p2, p1), (inverse_2, inverse_1)))
-        f = rotor.free_turn(lanes, *vectors, Symbol(builder, values[4]))
-        quaternions = [
-            context.make_tuple(builder, QUATERNION, [lane(part).value for part in f]) for lane in (lanes.first, lanes.second)
-        ]
-        return context.make_tuple(builder, both, quaternions)
-
-    return both(p2, inverse_2, p1, inverse_1, h), code
+    return both(p2, p1, inverse_2, inverse_1, h), partial(written_out_twice, rotor.free_turn)
 
 
 @jit()
@@ -128,6 +110,6 @@ def turn_both_exactly(
     square_2, square_1 = parts(a2[2], inverse_2, h), parts(a1[2], inverse_1, h)
     count = count_of(max(square_2, square_1))
     for _ in range(count):
-        f2, f1 = free_turns(a2[2], inverse_2, a1[2], inverse_1, h / count)
+        f2, f1 = free_turns(a2[2], a1[2], inverse_2, inverse_1, h / count)
         a2, a1 = turned(a2, f2), turned(a1, f1)
     return a2, a1, count_of(square_2) > 0, count_of(square_1) > 0

@@ -31,4 +31,6 @@ def beyond_points(gradient: Vector, x: Vector, constants: Array) -> Vector:
 @jit(step_signature(PAIR_POINTER))
 def step(state: Array, constants: Array, scheme: Array, potential: PairPotential, parameters: Array, h: float) -> int:
     """Advance a pair by h."""
-    return take_stages(move_on_orbit, beyond_points, turn_both_exactly, state, constants, scheme, potential, parameters, h)
+    return take_stages(
+        move_on_orbit, beyond_points, turn_both_exactly, state, constants, scheme, potential, parameters, h
+    )
