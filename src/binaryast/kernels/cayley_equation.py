@@ -36,7 +36,7 @@ def first_guess(lanes: Lanes, a: Three, b: Three) -> Three:
     return c1, c2, n * a[2] + b[2] * c1 * c2
 
 
-def improved(a: Three, b: Three, c: Three) -> Improved:
+def improved(lanes: Lanes, a: Three, b: Three, c: Three) -> Improved:
     """Correct twice with one Jacobian (Potra and Ptak's third-order form of Newton's method).
 
     What remains after the first correction d is exactly |d|^2 a + b d d, so it is formed without cancellation; after
@@ -65,3 +65,8 @@ def improved(a: Three, b: Three, c: Three) -> Improved:
     e3 = (k31 * r1 + k32 * r2 + k33 * r3) * inverse
     second = e1 * e1 + e2 * e2 + e3 * e3
     return Improved((c1 + (d1 + e1), c2 + (d2 + e2), c3 + (d3 + e3)), first * second, determinant)
+
+
+def begun(lanes: Lanes, a: Three, b: Three) -> Improved:
+    """Return the first guess, improved once."""
+    return improved(lanes, a, b, first_guess(lanes, a, b))

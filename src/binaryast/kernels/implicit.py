@@ -15,7 +15,7 @@ import numpy as np
 from numba import types
 from numba.extending import intrinsic
 
-from binaryast.kernels.cayley_equation import first_guess, improved
+from binaryast.kernels import cayley_equation
 from binaryast.kernels.jit import Array, Vector, jit
 from binaryast.kernels.so3 import hat, rodrigues_coefficients, solve_linear
 from binaryast.kernels.symbols import written_out, written_out_twice
@@ -83,28 +83,26 @@ def solve(inertia: Array, g: Array) -> tuple[Array, int]:
 
 @intrinsic  # type: ignore[untyped-decorator]
 def begun(_: Any, a: Any, b: Any) -> Any:
-    """Return the first guess of c, improved once: see `improvement`."""
-    return IMPROVED(a, b), partial(written_out, lambda lanes, a, b: improved(a, b, first_guess(lanes, a, b)))
+    """Return a first guess of c (3), the square of what is left in it, and the Jacobian's determinant."""
+    return IMPROVED(a, b), partial(written_out, cayley_equation.begun)
 
 
 @intrinsic  # type: ignore[untyped-decorator]
-def improvement(_: Any, a: Any, b: Any, c: Any) -> Any:
-    """Return c (3) improved, the square of what is left in it, and the Jacobian's determinant."""
-    return IMPROVED(a, b, c), partial(written_out, lambda lanes, a, b, c: improved(a, b, c))
+def improved(_: Any, a: Any, b: Any, c: Any) -> Any:
+    """Return the same of better Cayley coordinates."""
+    return IMPROVED(a, b, c), partial(written_out, cayley_equation.improved)
 
 
 @intrinsic  # type: ignore[untyped-decorator]
 def both_begun(_: Any, a2: Any, a1: Any, b2: Any, b1: Any) -> Any:
-    """Return the same of two bodies side by side."""
-    formula = partial(written_out_twice, lambda lanes, a, b: improved(a, b, first_guess(lanes, a, b)))
-    return types.UniTuple(IMPROVED, 2)(a2, a1, b2, b1), formula
+    """Return first guesses of two bodies, side by side."""
+    return types.UniTuple(IMPROVED, 2)(a2, a1, b2, b1), partial(written_out_twice, cayley_equation.begun)
 
 
 @intrinsic  # type: ignore[untyped-decorator]
 def both_improved(_: Any, a2: Any, a1: Any, b2: Any, b1: Any, c2: Any, c1: Any) -> Any:
-    """Return the same of two bodies side by side."""
-    formula = partial(written_out_twice, lambda lanes, a, b, c: improved(a, b, c))
-    return types.UniTuple(IMPROVED, 2)(a2, a1, b2, b1, c2, c1), formula
+    """Return the same of better Cayley coordinates of two bodies, side by side."""
+    return types.UniTuple(IMPROVED, 2)(a2, a1, b2, b1, c2, c1), partial(written_out_twice, cayley_equation.improved)
 
 
 @jit()
@@ -139,7 +137,7 @@ def solve_cayley(inverse_moments: Vector, ratios: Vector, g: Vector) -> tuple[Ve
     c = begun(a, ratios)
     iterations = 1
     while not is_near(c) and iterations < MOST_ITERATIONS:
-        c = improvement(a, ratios, (c[0], c[1], c[2]))
+        c = improved(a, ratios, (c[0], c[1], c[2]))
         iterations += 1
     return (c[0], c[1], c[2]), iterations if is_solved(c) else -1
 

@@ -28,8 +28,8 @@ from binaryast.kernels.lanes import Lanes, Number
 Three: TypeAlias = tuple[Number, Number, Number]
 Four: TypeAlias = tuple[Number, Number, Number, Number]
 
-LONGEST = 0.45  # of h sqrt(max |g|) in one call: series and quadrature then leave 1e-15 LARGEST_TURN = 1.2  # of h
-Omega in one call: half of psi is then below pi/4, where the series of sine and cosine are short
+LONGEST = 0.45  # of h sqrt(max |g|) in one call: series and quadrature then leave 1e-15
+LARGEST_TURN = 1.2  # of h Omega in one call: half of psi is then below pi/4, where sine and cosine have short series
 # Gauss and Legendre's rule of eight nodes: those above zero, with their weights
 NODES = (0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363)
 WEIGHTS = (0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763)

@@ -124,11 +124,13 @@ def written_out_twice(formula: Any, context: Any, builder: Any, signature: Any, 
 
     Arguments that are no tuples are there once, and the same for both.
     """
-    lanes, kinds = SymbolLanes(builder), list(signature.args)
-    arguments, given = [], [_unpacked(builder, kind, value) for kind, value in zip(kinds, values, strict=True)]
-    while given:
-        one = given.pop(0) arguments.append([lanes.pair(*both) for both in zip(one, given.pop(0), strict=True)] if
-        isinstance(one, list) else one)
+    lanes, arguments = SymbolLanes(builder), []
+    given = iter([_unpacked(builder, kind, value) for kind, value in zip(signature.args, values, strict=True)])
+    for one in given:
+        if isinstance(one, list):
+            arguments.append([lanes.pair(*both) for both in zip(one, next(given), strict=True)])
+        else:
+            arguments.append(one)
     result = _flat(formula(lanes, *arguments))
     tuples = [
         context.make_tuple(builder, kind, [as_value(builder, lane(number), FLOAT) for number in result])
