@@ -36,8 +36,14 @@ class Integrator(Value, ABC):
         relative frame for a pair and the inertial one for several bodies.
     symplectic, reversible, adaptive : bool
         Its properties.
+    several : bool
+        Whether it takes more than two bodies.
+    title : str
+        What it is, in a line.
     """
 
+    title: ClassVar[str]
+    several: ClassVar[bool] = True
     frame: str | None
     symplectic: ClassVar[bool]
     reversible: ClassVar[bool]
@@ -66,6 +72,11 @@ class Integrator(Value, ABC):
         """Raise an `InputError` where it cannot follow this system from here."""
         self.is_inertial(len(system.bodies))
 
+    @classmethod
+    def variants(cls) -> list[str]:
+        """Return what there is to choose, a line each."""
+        return []
+
 
 class Stepping(Integrator):
     """An integrator whose equal steps are compiled: kicks by gravity and drifts without it, in turn.
@@ -88,6 +99,7 @@ class Stepping(Integrator):
     reversible: ClassVar[bool] = True
     adaptive: ClassVar[bool] = False  # type: ignore[misc]
     schemes: ClassVar[dict[str, Scheme]]
+    exact_rotation: ClassVar[bool] = True
 
     @property
     def order(self) -> int:
@@ -97,6 +109,16 @@ class Stepping(Integrator):
     @abstractmethod
     def kernel(self, *, inertial: bool) -> Callable[..., Any]:
         """Return the compiled step of a pair in the relative frame, or of any number of bodies in the inertial one."""
+
+    @classmethod
+    def variants(cls) -> list[str]:
+        """Return its schemes, a line each."""
+        return [
+            f"scheme={name:10} order {scheme.order:2}, {scheme.evaluations:2} evaluations of gravity a step"
+            + ("" if cls.exact_rotation else f", h Omega < {1 / scheme.longest:.3g}")
+            + f"   {scheme.source}"
+            for name, scheme in cls.schemes.items()
+        ]
 
     def _check(self) -> None:
         """Take the unit off the step, and raise for a scheme or a frame that there is not."""
@@ -164,7 +186,9 @@ class LGVI(Stepping):
     frame: str | None = None
     scheme: str | None = None
 
+    title: ClassVar[str] = "the Lie group variational integrator and its compositions"
     schemes: ClassVar[dict[str, Scheme]] = schemes.COMPOSITIONS
+    exact_rotation: ClassVar[bool] = False
     by_order: ClassVar[dict[int, str]] = {2: "leapfrog", 4: "suzuki4", 6: "kl6", 8: "kl8", 10: "ss10"}
 
     def __post_init__(self) -> None:
@@ -241,6 +265,7 @@ class Splitting(Stepping):
     scheme: str = "rkn6a"
     frame: str | None = None
 
+    title: ClassVar[str] = "free motion with exact rotation, and kicks by gravity"
     schemes: ClassVar[dict[str, Scheme]] = schemes.SPLITTINGS
     largest_turn: ClassVar[float] = inf  # type: ignore[misc]
 
@@ -306,6 +331,8 @@ class KeplerSplitting(Stepping):
     step: Quantity
     scheme: str = "aba864"
 
+    title: ClassVar[str] = "Kepler motion with exact rotation, and kicks by the rest of gravity, for bound pairs"
+    several: ClassVar[bool] = False
     frame: ClassVar[str] = "relative"  # type: ignore[misc]
     schemes: ClassVar[dict[str, Scheme]] = schemes.KEPLER_SPLITTINGS
     largest_turn: ClassVar[float] = inf  # type: ignore[misc]
@@ -387,6 +414,7 @@ class RungeKutta(Integrator):
     method: str = "DOP853"
     frame: str | None = None
 
+    title: ClassVar[str] = "SciPy's Runge-Kutta methods on the equations as printed, to compare with"
     symplectic: ClassVar[bool] = False
     reversible: ClassVar[bool] = False
     orders: ClassVar[dict[str, int]] = {"DOP853": 8, "RK45": 5, "RK23": 3}
@@ -411,6 +439,14 @@ class RungeKutta(Integrator):
         """Order of the error in the step."""
         return self.orders[self.method]
 
+    @classmethod
+    def variants(cls) -> list[str]:
+        """Return its methods, a line each."""
+        return [
+            f"method={name:10} order {order:2}, steps by tolerances or of a fixed size"
+            for name, order in cls.orders.items()
+        ]
+
     @property
     def adaptive(self) -> bool:  # type: ignore[override]
         """Whether the step follows the tolerances."""
@@ -421,3 +457,6 @@ def check_frame(frame: Any, name: str) -> None:
     """Raise for a frame that there is not."""
     if frame is not None and (not isinstance(frame, str) or frame not in FRAMES):
         raise InputError(f"{name}: frame={brief(repr(frame))}: expected one of {', '.join(FRAMES)}")
+
+
+KINDS: dict[str, type[Integrator]] = {kind.__name__: kind for kind in (LGVI, Splitting, KeplerSplitting, RungeKutta)}

@@ -38,8 +38,13 @@ class Scheme:
 
     @property
     def stages(self) -> int:
-        """How many evaluations of gravity a step takes."""
+        """How many drifts a step takes, each with an evaluation of gravity at its end."""
         return len(self.drifts)
+
+    @property
+    def evaluations(self) -> int:
+        """How many evaluations of gravity its kicks need: one less than the drifts where it begins with a drift."""
+        return self.stages - (self.kicks[0] == 0.0)
 
     @property
     def longest(self) -> float:
@@ -118,7 +123,7 @@ SOFRONIOU_SPALETTA10 = composition(
         *(0.10308739852747108, 0.41143087395589023, -0.0048663605831352616, -0.3920333537086399, 0.05194250296244965),
         *(0.050665090759924494, 0.049674370639729876, 0.04931773575959464),
     ],
-    "M. Sofroniou, G. Spaletta, J. Optim. Methods Softw. 20 (2005) 597",
+    "M. Sofroniou, G. Spaletta, Optim. Methods Softw. 20 (2005) 597",
 )
 RKN4 = kick_first(
     "rkn4",
