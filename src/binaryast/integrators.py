@@ -89,11 +89,14 @@ class Stepping(Integrator):
         The shares of a step that its kicks and drifts have.
     largest_turn : float
         The turn h Omega [rad] at and above which a step has no solution; infinite where there always is one.
+    changed : Scheme or None
+        The change of variables in which the steps are taken, undone for each saved row.
     """
 
     step: Quantity
     shares: Scheme
     largest_turn: float
+    changed: Scheme | None = None
 
     symplectic: ClassVar[bool] = True
     reversible: ClassVar[bool] = True
@@ -309,27 +312,36 @@ class KeplerSplitting(Stepping):
     scheme : {"aba864", "aba104", "aba1064"}
         ABA(8, 6, 4), ABA(10, 4), ABA(10, 6, 4), with 7, 7 and 8 evaluations of gravity a step (and one more at its end,
         to look at the energy).
+    corrector : bool
+        Whether to follow the motion in variables in which the errors of ABA(10, 4) of order eps^2 h^4 are twenty times
+        smaller, for that scheme only. The change of variables is symplectic, and made at the start and for each saved
+        row, so it costs next to nothing; the figure of the energy is then that of the rows. It lowers the energy's
+        error up to 25 times and that of the position 2 to 6 times; a tumbling body's attitude, whose error is of order
+        eps^3, gains nothing.
 
     Raises
     ------
     InputError
-        For a step that is not a positive time or another scheme; when a run begins, for a system that is no bound pair.
+        For a step that is not a positive time, another scheme or one without a corrector; when a run begins, for a
+        system that is no bound pair.
 
     References
     ----------
-    S. Blanes, F. Casas, A. Farres, J. Laskar, J. Makazaga, A. Murua, Appl. Numer. Math. 68 (2013) 58; J. Wisdom,
-    M. Holman, Astron. J. 102 (1991) 1528; J. Touma, J. Wisdom, Astron. J. 107 (1994) 1189.
+    S. Blanes, F. Casas, A. Farres, J. Laskar, J. Makazaga, A. Murua, Appl. Numer. Math. 68 (2013) 58; J. Wisdom, M.
+    Holman, Astron. J. 102 (1991) 1528; J. Touma, J. Wisdom, Astron. J. 107 (1994) 1189; R. I. McLachlan, ANZIAM J. 38
+    (1996) 84, on correctors.
 
     Examples
     --------
     >>> import astropy.units as u
     >>> import binaryast as ba
     >>> ba.KeplerSplitting(step=30 * u.min)
-    KeplerSplitting(step=<Quantity 1800. s>, scheme='aba864')
+    KeplerSplitting(step=<Quantity 1800. s>, scheme='aba864', corrector=False)
     """
 
     step: Quantity
     scheme: str = "aba864"
+    corrector: bool = False
 
     title: ClassVar[str] = "Kepler motion with exact rotation, and kicks by the rest of gravity, for bound pairs"
     several: ClassVar[bool] = False
@@ -339,6 +351,18 @@ class KeplerSplitting(Stepping):
 
     def __post_init__(self) -> None:
         self._check()
+        if not isinstance(self.corrector, bool):
+            raise InputError(f"KeplerSplitting: corrector={brief(repr(self.corrector))}: expected True or False")
+        if self.corrector and self.scheme not in schemes.CORRECTORS:
+            known = ", ".join(schemes.CORRECTORS)
+            raise InputError(
+                f"KeplerSplitting: corrector=True: scheme={self.scheme!r} has none; there is one of {known}"
+            )
+
+    @property
+    def changed(self) -> Scheme | None:  # type: ignore[override]
+        """The change of variables at the start of a run, None without a corrector."""
+        return schemes.CORRECTORS[self.scheme] if self.corrector else None
 
     @property
     def shares(self) -> Scheme:  # type: ignore[override]

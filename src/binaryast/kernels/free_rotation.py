@@ -80,7 +80,8 @@ def parts(p: Vector, inverse: Vector, h: float) -> float:
     s1, s2, s3 = p[0] * p[0], p[1] * p[1], p[2] * p[2]
     nutation = max(abs(e2 * e3) * s1, abs(e3 * e1) * s2, abs(e1 * e2) * s3)
     spin = s1 * i1 * i1 + s2 * i2 * i2 + s3 * i3 * i3
-    return h * h * max(nutation * (1.0 / rotor.LONGEST**2), spin * (1.0 / rotor.LARGEST_TURN**2))
+    square = h * h * max(nutation * (1.0 / rotor.LONGEST**2), spin * (1.0 / rotor.LARGEST_TURN**2))
+    return square + (spin - spin)  # not a number where the spin is none
 
 
 @jit()
