@@ -41,7 +41,7 @@ def drift(x: Vector, v: Vector, gm: float, h: float) -> tuple[Vector, Vector]:
     """Return x(h) - x and v(h) - v, without cancellation; not numbers where x, v or h are none.
 
     Backwards in time is forwards with the other velocity. Kepler's equation grows with s, so it has one solution, which
-    is kept between bounds; where the iteration would leave them, it goes to their middle, or twice as far.
+    is kept between bounds; where the iteration would leave them, or is slow, it goes to their middle.
     """
     sign = -1.0 if h < 0.0 else 1.0
     h = sign * h
@@ -55,7 +55,7 @@ def drift(x: Vector, v: Vector, gm: float, h: float) -> tuple[Vector, Vector]:
         s = h * beta / gm
     if not s > 0.0:
         s = u
-    low, high = 0.0, inf
+    low, high, last = 0.0, inf, inf
     for _ in range(MOST_ITERATIONS):
         g0, g1, g2, g3 = stumpff(beta, s)
         f = r * s + eta * g2 + zeta * g3 - h
@@ -83,6 +83,8 @@ def drift(x: Vector, v: Vector, gm: float, h: float) -> tuple[Vector, Vector]:
                 (c * x[0] + e * v[0], c * x[1] + e * v[1], c * x[2] + e * v[2]),
             )
         s += d
-        if not low < s < high:
-            s = 0.5 * (low + high) if high < inf else 2.0 * low
+        if high < inf and not (low < s < high and abs(d) < 0.5 * last):
+            d = 0.5 * (high - low)
+            s = low + d
+        last = abs(d)
     return (nan, nan, nan), (nan, nan, nan)
