@@ -117,6 +117,9 @@ def parser() -> argparse.ArgumentParser:
     running.add_argument("--step", metavar="TIME", help="largest step, such as 40s")
     running.add_argument("--save-every", metavar="TIME", help="time between saved rows, such as 10min")
     running.add_argument("--degree", type=int, metavar="N", help="degree of gravity: 0 (point masses), or 2 to 16")
+    running.add_argument(
+        "--accuracy", type=float, metavar="X", help="error at the end, of positions over the distance and angles"
+    )
     running.add_argument("--integrator", choices=INTEGRATORS, help="method (default: LGVI)")
     running.add_argument("--order", type=int, choices=(2, 4, 6, 8, 10), help="order of LGVI (default: 2)")
     running.add_argument("--scheme", metavar="NAME", help="scheme, of those of binaryast list --integrators")
@@ -196,7 +199,6 @@ def _list_integrators() -> int:
 def _show(options: argparse.Namespace) -> int:
     import numpy as np
 
-    from binaryast.integrators import Stepping
     from binaryast.units import span
 
     entry = _scenario(options.system)
@@ -217,8 +219,8 @@ def _show(options: argparse.Namespace) -> int:
         print(f"  gravity{line}")
     distances = np.linalg.norm(entry.state.si.position[1:] - entry.state.si.position[0], axis=1)
     print(f"  start: separation {', '.join(f'{d:.8g}' for d in distances)} m, axes {entry.state.frame}")
-    steps = f" in steps of {entry.integrator.step.value:g} s" if isinstance(entry.integrator, Stepping) else ""
-    print(f"  by default: {span(entry.duration.value)}{steps}, by {type(entry.integrator).__name__}")
+    how = f"by {entry.integrator!r}" if entry.accuracy is None else f"to an accuracy of {entry.accuracy:g} at the end"
+    print(f"  by default: {span(entry.duration.value)} {how}")
     for source in entry.sources:
         more = "".join(f"; {key}: {source[key]}" for key in ("uncertainty", "note") if key in source)
         print(f"  {source['what']}: {source['source']}{more}")
@@ -261,8 +263,8 @@ def _run(options: argparse.Namespace) -> int:
             storage.refuse(path, force=options.force)
     if output.suffix.lower() != RUN:
         raise InputError(f"--output: {output}: the file of a run is HDF5: give a name that ends in .h5")
-    system, state, integrator, duration, save_every = _start(options)
-    run = _propagate(system, state, integrator, duration, save_every, progress=not options.json)
+    system, state, method, duration, save_every = _start(options)
+    run = _propagate(system, state, method, duration, save_every, progress=not options.json)
     run.write(output, force=options.force)
     code = 0 if picture is None else _draw(run, picture, output, force=options.force)
     _report(run, output, None if code else picture, as_json=options.json)
@@ -305,8 +307,11 @@ def _time(text: str | None, option: str) -> Any:
     return None if text is None else quantity(to_si(parse(text, option, "40 s"), "s", option, sign="positive"), "s")
 
 
-def _start(options: argparse.Namespace) -> tuple["System", "State", "Integrator", Any, Any]:
-    """Return what to run: a scenario or the end of an earlier run, with the options in the place of its own values."""
+def _start(options: argparse.Namespace) -> tuple["System", "State", dict[str, Any], Any, Any]:
+    """Return what to run: a scenario or the end of an earlier run, with the options in the place of its own values.
+
+    The third of them is the integrator or the accuracy, by name.
+    """
     duration, step, save_every = (
         _time(getattr(options, name), f"--{name.replace('_', '-')}") for name in ("duration", "step", "save_every")
     )
@@ -316,17 +321,28 @@ def _start(options: argparse.Namespace) -> tuple["System", "State", "Integrator"
         earlier = Trajectory.read(options.system)
         if duration is None:
             raise InputError(f"--duration: say how long to go on from the end of {options.system}, such as 60d")
-        pair, start, integrator = earlier.system, earlier[-1], earlier.integrator
+        pair, start, integrator, accuracy = earlier.system, earlier[-1], earlier.integrator, earlier.accuracy
     else:
         entry = _scenario(options.system)
-        pair, start, integrator = entry.system, entry.state, entry.integrator
+        pair, start, integrator, accuracy = entry.system, entry.state, entry.integrator, entry.accuracy
         duration = entry.duration if duration is None else duration
         save_every = entry.save_every if save_every is None else save_every
     if options.degree is not None:
         pair = replace(pair, gravity=_gravity_of_degree(options.degree))
     if save_every is not None and options.save_every is None and save_every > duration:
         save_every = None  # the scenario's, for its own longer duration
-    return pair, start, _integrator(integrator, step, options), duration, save_every
+    return pair, start, _method(integrator, accuracy, step, options), duration, save_every
+
+
+def _method(before: "Integrator", accuracy: float | None, step: Any, options: argparse.Namespace) -> dict[str, Any]:
+    """Return the integrator, or the accuracy where one is known and no integrator is asked for."""
+    asked = [name for name in ("integrator", "order", "scheme", "frame") if getattr(options, name) is not None]
+    asked += ["step"] * (step is not None)
+    if options.accuracy is not None and asked:
+        raise InputError(f"--accuracy: got --{asked[0]} too: an accuracy picks the method and its step")
+    if options.accuracy is not None or (accuracy is not None and not asked):
+        return {"accuracy": accuracy if options.accuracy is None else options.accuracy}
+    return {"integrator": _integrator(before, step, options)}
 
 
 def _gravity_of_degree(degree: int) -> "Gravity":
@@ -373,7 +389,7 @@ def _integrator(before: "Integrator", step: Any, options: argparse.Namespace) ->
 
 
 def _propagate(
-    system: "System", state: "State", integrator: "Integrator", duration: Any, save_every: Any, *, progress: bool
+    system: "System", state: "State", method: dict[str, Any], duration: Any, save_every: Any, *, progress: bool
 ) -> "Trajectory":
     """Run; what ends a run early is in the report, so it needs no warning."""
     from binaryast.errors import EndWarning
@@ -381,9 +397,7 @@ def _propagate(
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", EndWarning)
-        return propagate(
-            system, state, duration=duration, integrator=integrator, save_every=save_every, progress=progress
-        )
+        return propagate(system, state, duration=duration, save_every=save_every, progress=progress, **method)
 
 
 def _periods(run: "Trajectory") -> dict[str, float]:
@@ -406,7 +420,7 @@ def _report(run: "Trajectory", output: Path, picture: Path | None, *, as_json: b
     periods = _periods(run)
     pair = len(run.system.bodies) == 2
     if as_json:
-        names = ("status", "message", "steps", "step", "wall_time", *FIGURES)
+        names = ("status", "message", "steps", "step", "wall_time", "choice", *FIGURES)
         figures = {name: getattr(run, name) for name in names}
         result = {name: getattr(value, "value", value) for name, value in figures.items()}
         result |= {

@@ -20,6 +20,10 @@ class StepError(InputError):
     """A step for which the method has no solution, or one longer than what it has to divide."""
 
 
+class AccuracyError(InputError):
+    """An accuracy that cannot be reached: the motion is too sensitive, or no trial run comes to its end."""
+
+
 class ContactError(InputError):
     """Bodies that overlap at the start."""
 

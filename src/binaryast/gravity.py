@@ -58,6 +58,10 @@ class Gravity(Value, ABC):
             Where the model cannot take these bodies.
         """
 
+    def evaluation_time(self, secondary: RigidBody, primary: RigidBody) -> float:
+        """Return about how long an evaluation takes [us], to compare methods: it chooses between them, no more."""
+        return 10.0
+
     def check_place(self, secondary: RigidBody, primary: RigidBody, x: Floats, r: Floats) -> None:
         """Raise an `InputError` where the model cannot be asked at X (3,) [m] and R (3, 3); most always can.
 
@@ -108,6 +112,10 @@ class PointMass(Gravity):
 
         return potential
 
+    def evaluation_time(self, secondary: RigidBody, primary: RigidBody) -> float:
+        """Return about how long an evaluation takes [us]."""
+        return 0.02
+
     def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
         """Return G m1 m2."""
         return np.array([secondary.si.gm * primary.si.mass])
@@ -132,6 +140,10 @@ class SecondDegree(Gravity):
         from binaryast.kernels.mutual.second_degree import potential
 
         return potential
+
+    def evaluation_time(self, secondary: RigidBody, primary: RigidBody) -> float:
+        """Return about how long an evaluation takes [us]."""
+        return 0.04
 
     def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
         """Return G m1 m2, G m2 J1 (3), G m1 J2 (3)."""
@@ -204,6 +216,10 @@ class Multipole(Gravity):
 
         return kernel_for(parameters, self.degree)
 
+    def evaluation_time(self, secondary: RigidBody, primary: RigidBody) -> float:
+        """Return about how long an evaluation takes [us]."""
+        return float(0.02 + 0.002 * self.degree**2.2)
+
     def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
         """Return G m1 m2 and the moments of both bodies."""
         return _multipole_parameters(secondary, primary, self.degree)
@@ -239,6 +255,10 @@ class PointPairs(Gravity):
         from binaryast.kernels.mutual.points import potential
 
         return potential
+
+    def evaluation_time(self, secondary: RigidBody, primary: RigidBody) -> float:
+        """Return about how long an evaluation takes [us]."""
+        return 0.04 + 0.0023 * len(_points(secondary)[1]) * len(_points(primary)[1])
 
     def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
         """Return the counts, and the coordinates and masses of the points of both bodies."""

@@ -379,14 +379,21 @@ class KeplerSplitting(Stepping):
         """
         if len(system.bodies) > 2:
             raise InputError(f"KeplerSplitting: it is for a pair, got {len(system.bodies)} bodies: take ba.Splitting")
+        if not self.is_bound(system, state):
+            position, velocity, _, _ = state.si
+            distance, speed = (float(np.linalg.norm(array[1] - array[0])) for array in (position, velocity))
+            escape = sqrt(2 * sum(body.si.gm for body in system.bodies) / distance)
+            raise InputError(
+                f"KeplerSplitting: it is for a bound pair, got {speed:.4g} m/s at {distance:.4g} m, where {escape:.4g} "
+                "m/s is the speed of escape: take ba.Splitting"
+            )
+
+    @staticmethod
+    def is_bound(system: System, state: State) -> bool:
+        """Whether a pair is bound as two points would be."""
         position, velocity, _, _ = state.si
         x, v = position[1] - position[0], velocity[1] - velocity[0]
-        distance, gm = float(np.linalg.norm(x)), sum(body.si.gm for body in system.bodies)
-        if distance > 0 and v @ v / 2 >= gm / distance:
-            raise InputError(
-                f"KeplerSplitting: it is for a bound pair, got {np.linalg.norm(v):.4g} m/s at {distance:.4g} m, where "
-                f"{sqrt(2 * gm / distance):.4g} m/s is the speed of escape: take ba.Splitting"
-            )
+        return bool(v @ v / 2 * np.linalg.norm(x) < sum(body.si.gm for body in system.bodies))
 
     def kernel(self, *, inertial: bool) -> Callable[..., Any]:
         """Return the compiled step of a pair."""

@@ -5,16 +5,16 @@ import warnings
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
-from math import inf, pi, sqrt
+from math import inf, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from astropy.units import Quantity
 
-from binaryast import constants
-from binaryast.errors import EndWarning, GravityWarning, InputError, StepWarning
+from binaryast import choosing, constants
+from binaryast.errors import AccuracyError, EndWarning, GravityWarning, InputError, StepWarning
 from binaryast.gravity import LARGEST_DEGREE
-from binaryast.integrators import Integrator, RungeKutta, Stepping
+from binaryast.integrators import Integrator, RungeKutta, Splitting, Stepping
 from binaryast.kernels import loop
 from binaryast.kernels.jit import source_hash
 from binaryast.outcome import Outcome
@@ -24,7 +24,7 @@ from binaryast.state import State
 from binaryast.stepping import SteppedRun, turn_error
 from binaryast.system import Pair, System
 from binaryast.trajectory import Trajectory, TrajectoryFloats
-from binaryast.units import Floats, brief, quantity, to_si
+from binaryast.units import Floats, brief, numbers, quantity, span, to_si
 
 if TYPE_CHECKING:
     from binaryast.solving import SolvedRun
@@ -33,6 +33,9 @@ DOUBTFUL_ENERGY_ERROR = 0.01
 DOUBTFUL_TURN = 2 * pi / 20  # rad in one step
 DOUBTFUL_TERM = 1e-3  # of gravity that is left out, over G m1 m2/r
 TERM_ROWS = 1000  # how many of the saved rows are looked at for it
+LEAST_ACCURACY, MOST_ACCURACY = 1e-14, 1e-2
+ATTEMPTS = 8  # to reach it
+TRY_OUT = Splitting(quantity(1.0, "s"))
 
 
 def propagate(
@@ -40,7 +43,8 @@ def propagate(
     state: State,
     *,
     duration: Quantity,
-    integrator: Integrator,
+    integrator: Integrator | None = None,
+    accuracy: float | None = None,
     save_every: Quantity | None = None,
     progress: bool = False,
 ) -> Trajectory:
@@ -54,8 +58,14 @@ def propagate(
         Where they start. A barycentre that moves goes on doing so.
     duration : Quantity
         How long (time); met exactly.
-    integrator : Integrator
+    integrator : Integrator, optional
         How, such as ``LGVI(step=40 * u.s)``. The step used is the largest one up to this that divides ``save_every``.
+    accuracy : float, optional
+        Instead of an integrator: how large the error may be at the end, in positions relative to the distance from the
+        primary and in the attitudes [rad] of all bodies; 1e-6 where neither is given. Method and step are picked by
+        trials over some orbits, which say what each method needs, and a model of what a step costs; a second run, with
+        steps twice as long, estimates the error, and where it is larger than was asked, the step is shortened. The
+        trajectory has the ``estimated_error`` and says in ``choice`` what was picked and why.
     save_every : Quantity, optional
         Time between saved rows; met exactly, with one more row at the end where it does not divide ``duration``. By
         default at most 2000 rows are kept, each a whole number of steps apart.
@@ -74,6 +84,9 @@ def propagate(
         order 2.
     ContactError
         Where the bodies overlap at the start.
+    AccuracyError
+        Where an accuracy cannot be had, with the one that can, or the time for which it can: round-off grows to more
+        than what was asked, as it does soon where the motion is chaotic.
     InputError
         For anything else that cannot be.
 
@@ -95,7 +108,18 @@ def propagate(
     >>> run = ba.propagate(system, state, duration=1 * u.day, integrator=ba.LGVI(step=40 * u.s))
     >>> run.status, run.steps
     ('completed', 2160)
+    >>> run = ba.propagate(system, state, duration=1 * u.day, accuracy=1e-8)
+    >>> run.estimated_error < 1e-8
+    True
     """
+    if integrator is None:
+        return _to_accuracy(
+            system, state, duration, 1e-6 if accuracy is None else accuracy, save_every, progress=progress
+        )
+    if accuracy is not None:
+        raise InputError(
+            f"propagate: got integrator={brief(integrator)} and accuracy={brief(accuracy)}: give one of them"
+        )
     _check_kinds(system, state, integrator)
     end = float(to_si(duration, "s", "duration", sign="positive"))
     interval = None if save_every is None else float(to_si(save_every, "s", "save_every", sign="positive"))
@@ -103,6 +127,39 @@ def propagate(
     with bar(end, progress) as show:
         run.go(show)
     return _trajectory(system, state, integrator, run.outcome())
+
+
+def _to_accuracy(
+    system: System, state: State, duration: Quantity, accuracy: float, save_every: Quantity | None, *, progress: bool
+) -> Trajectory:
+    """Follow a system to an accuracy: plan, run, estimate, and again with a shorter step where it is not reached."""
+    _check_kinds(system, state)
+    asked = float(numbers(accuracy, "accuracy", ()))
+    if not LEAST_ACCURACY <= asked <= MOST_ACCURACY:
+        raise InputError(f"accuracy: expected {LEAST_ACCURACY:g} to {MOST_ACCURACY:g}, got {asked:g}")
+    end = float(to_si(duration, "s", "duration", sign="positive"))
+    interval = None if save_every is None else float(to_si(save_every, "s", "save_every", sign="positive"))
+    SteppedRun(system, state, TRY_OUT, schedule(end, end, interval))  # what is wrong with the start is said first
+    problem = choosing.Problem(system, state)
+    plan = choosing.plan(problem, end, asked, min(end / 4, interval or end))
+    for _ in range(ATTEMPTS):
+        run = SteppedRun(system, state, plan.integrator, schedule(end, plan.integrator.step.value, interval))
+        with bar(end, progress) as show:
+            run.go(show)
+        outcome = run.outcome()
+        if outcome.status != "completed":
+            return _trajectory(system, state, plan.integrator, outcome, accuracy=asked, choice=plan.reason)
+        found = problem.estimate(plan, outcome.motion, outcome.step, end, asked)
+        if found is None or found.within(asked):
+            error = None if found is None else found.error
+            return _trajectory(
+                system, state, plan.integrator, outcome, accuracy=asked, estimated_error=error, choice=plan.reason
+            )
+        plan = plan.shortened(outcome.step, max(1.0, found.of_steps / asked))
+    raise AccuracyError(
+        f"accuracy: {asked:g} is not reached after {span(end)} with steps down to {outcome.step:.3g} s: ask for ten "
+        "times more, or for a shorter run"
+    )
 
 
 def _run(
@@ -122,7 +179,7 @@ def _run(
     return SolvedRun(system, state, integrator, end, interval)
 
 
-def _check_kinds(system: Any, state: Any, integrator: Any) -> None:
+def _check_kinds(system: Any, state: Any, integrator: Any = TRY_OUT) -> None:
     """Raise where an argument is another object than it should be."""
     for name, value, kind in (
         ("system", system, System),
@@ -163,15 +220,8 @@ def _check_turns(system: System, state: State, integrator: Stepping, step: float
 
 def _check_orbits(system: System, state: State, integrator: Stepping, step: float) -> None:
     """Warn of a step that is long beside the time in which two bodies fall or go round each other, as they are now."""
-    position, velocity, _, _ = state.si
     longest = integrator.shares.longest
-    for pair in system.pairs:
-        x, v = (array[pair.secondary] - array[pair.primary] for array in (position, velocity))
-        distance = float(np.linalg.norm(x))
-        if distance == 0:
-            continue
-        gm = system.bodies[pair.primary].si.gm + system.bodies[pair.secondary].si.gm
-        rate = max(sqrt(gm / distance**3), float(np.linalg.norm(np.cross(x, v))) / distance**2)
+    for pair, rate in choosing.rates(system, state):
         if longest * step * rate > DOUBTFUL_TURN:
             part = "" if integrator.order == 2 else f", with parts of {longest * step:.3g} s,"
             warnings.warn(
@@ -184,7 +234,7 @@ def _check_orbits(system: System, state: State, integrator: Stepping, step: floa
             )
 
 
-def _trajectory(system: System, state: State, integrator: Integrator, outcome: Outcome) -> Trajectory:
+def _trajectory(system: System, state: State, integrator: Integrator, outcome: Outcome, **asked: Any) -> Trajectory:
     """Return what has been computed, and warn where it ended early or badly."""
     if outcome.status in ("contact", "failed"):
         warnings.warn(f"the run ended after {outcome.time[-1]:g} s: {outcome.message}", EndWarning, stacklevel=3)
@@ -215,6 +265,7 @@ def _trajectory(system: System, state: State, integrator: Integrator, outcome: O
         wall_time=quantity(outcome.wall_time, "s"),
         provenance=provenance(),
         **figures,
+        **asked,
     )
 
 

@@ -49,6 +49,7 @@ none::
     duration = "5 d"
     step = "20 s"
     save_every = "10 min"                         # may be left out
+    accuracy = 1e-8                               # may be left out; then the command picks method and step by itself
     integrator = { type = "LGVI", order = 8 }     # so may this: LGVI of order 2
 """
 
@@ -149,7 +150,9 @@ class Scenario(Value):
     system, state : System, State
         The bodies, their gravity and where they start.
     integrator : Integrator
-        How to run it.
+        How to run it, where no accuracy is asked for.
+    accuracy : float or None
+        The accuracy at which the command runs it.
     duration, save_every : Quantity
         How long, and how often to save; ``save_every`` may be None.
     sources : tuple of dict
@@ -163,6 +166,7 @@ class Scenario(Value):
     system: System
     state: State
     integrator: Integrator
+    accuracy: float | None
     duration: Quantity
     save_every: Quantity | None
     sources: tuple[dict[str, str], ...] = field(repr=False)
@@ -223,7 +227,7 @@ def _scenario(tables: dict[str, Any], name: str, text: str, folder: Path) -> Sce
     models = _gravity(_table(tables, "gravity"))
     system = System([_body(body, f"bodies[{i}]", folder) for i, body in enumerate(bodies)], models)
     run = _table(tables, "run")
-    _known(run, ("duration", "step", "save_every", "integrator"), "run.")
+    _known(run, ("duration", "step", "save_every", "accuracy", "integrator"), "run.")
     _needed(run, ("duration",), "run.")
     return Scenario(
         name=name,
@@ -231,6 +235,7 @@ def _scenario(tables: dict[str, Any], name: str, text: str, folder: Path) -> Sce
         system=system,
         state=_state(_table(tables, "state"), system),
         integrator=_integrator(run),
+        accuracy=_accuracy(run["accuracy"]) if "accuracy" in run else None,
         duration=_time(run["duration"], "run.duration"),
         save_every=_time(run["save_every"], "run.save_every") if "save_every" in run else None,
         sources=_sources(tables.get("sources", [])),
@@ -329,6 +334,13 @@ def _integrator(run: dict[str, Any]) -> Integrator:
         raise InputError("run.step is missing")
     step = {"step": _time(run["step"], "run.step")} if "step" in run else {}
     return _call(kind, step, arguments, "run.integrator")  # type: ignore[no-any-return]
+
+
+def _accuracy(value: Any) -> float:
+    """Return an accuracy: what it may be is said where it is used."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise InputError(f"run.accuracy: expected a number such as 1e-8, got {brief(value)}")
+    return float(value)
 
 
 def _state(table: dict[str, Any], system: System) -> State:

@@ -47,7 +47,10 @@ FIGURES = {  # of the whole run, over every step; with their units
     "closest_approach": "m",
     "closest_approach_time": "s",
     "max_next_degree_term": "",  # over saved rows; None of gravity that is not cut, and in older files
+    "accuracy": "",  # None where an integrator was given
+    "estimated_error": "",
 }
+SOMETIMES = ("max_next_degree_term", "accuracy", "estimated_error")  # None of some runs, and in older files
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +94,10 @@ class Trajectory(Value):
     max_next_degree_term : float or None
         Largest size, at saved rows, of the next two degrees of U that the gravity of a pair leaves out, over G m1 m2/r.
         It is an estimate of what its cut costs; torques lose more, by (r/size)^2. None of gravity without a cut.
+    accuracy, estimated_error, choice : float or None, float or None, str
+        Of a run for which an accuracy was asked: that, an estimate of the error at the end (of the position relative to
+        the distance, and of the attitudes of all bodies [rad], the largest), None where it ended early, and why the
+        integrator was picked.
     integrator, system, epoch, frame, provenance
         What was run, and on what.
     si : TrajectoryFloats
@@ -117,6 +124,9 @@ class Trajectory(Value):
     closest_approach_time: Quantity
     max_next_degree_term: float | None
     provenance: dict[str, str] = field(repr=False)
+    accuracy: float | None = None
+    estimated_error: float | None = None
+    choice: str = ""
 
     def __post_init__(self) -> None:
         for array in self.si:
@@ -332,6 +342,10 @@ class Trajectory(Value):
             f"linear {self.max_relative_linear_momentum_error:.1e}, "
             f"rotation {self.max_rotation_error:.1e}",
         ]
+        if self.accuracy is not None:
+            error = "not known" if self.estimated_error is None else f"{self.estimated_error:.1e}"
+            lines.append(f"  accuracy {self.accuracy:g} asked, error at the end {error} as estimated")
+            lines.append(f"  {self.choice}")
         if any(pair.gravity.cut_at is not None for pair in self.system.pairs):
             size = self.max_next_degree_term
             known = "not known" if size is None else f"at most {size:.1e} of G m1 m2/r"
@@ -420,6 +434,7 @@ class Trajectory(Value):
             "step": self.step.value,
             "frame": self.frame,
             "wall_time": self.wall_time.value,
+            "choice": self.choice,
         }
         figures = {name: getattr(self, name) for name in FIGURES}
         attributes |= {name: getattr(figure, "value", figure) for name, figure in figures.items() if figure is not None}
@@ -450,7 +465,7 @@ class Trajectory(Value):
         """
         path = storage.as_path(path)
         content = storage.read(path, verify=verify)
-        attributes = {"max_next_degree_term": None} | content.attributes
+        attributes: dict[str, Any] = dict.fromkeys(SOMETIMES) | {"choice": ""} | content.attributes
         try:
             return cls(
                 system=content.values["system"],
@@ -464,6 +479,7 @@ class Trajectory(Value):
                 step=quantity(float(attributes["step"]), "s"),
                 wall_time=quantity(float(attributes["wall_time"]), "s"),
                 provenance=content.provenance,
+                choice=str(attributes["choice"]),
                 **{
                     name: quantity(attributes[name], unit) if unit else attributes[name]
                     for name, unit in FIGURES.items()
