@@ -309,7 +309,18 @@ def test_a_folder_that_refuses_to_be_written(
 @pytest.mark.skipif(os.name == "nt", reason="signals are sent in another way")
 def test_ctrl_c_keeps_what_was_computed(folder: Path) -> None:
     process = subprocess.Popen(
-        [sys.executable, "-m", "binaryast", "run", "didymos", "--duration", "2000000d", "--no-picture"],
+        [
+            sys.executable,
+            "-m",
+            "binaryast",
+            "run",
+            "didymos",
+            "--duration",
+            "2000000d",
+            "--step",
+            "40s",
+            "--no-picture",
+        ],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -169,7 +169,10 @@ class Problem:
         segment = Segment(time / (stride * rows), stride * rows, stride)
         run = SteppedRun(self.system, state or self.state, integrator, [segment])
         run.go(lambda _: None)
-        return run.outcome()
+        outcome = run.outcome()
+        if outcome.status == "interrupted":
+            raise KeyboardInterrupt
+        return outcome
 
     def motion(self, integrator: Stepping, time: float, count: int, state: State | None = None) -> Motion | None:
         """Return the rows, None where the run does not come to its end."""
@@ -285,9 +288,11 @@ def plan(problem: Problem, end: float, accuracy: float, longest: float) -> Plan:
             f"accuracy: {accuracy:g} is not reached after {span(time)} by any method, down to {MOST} steps an orbit"
         )
     others = sum(1 for _ in problem.methods()) - 1
+    steps = problem.fastest / best.integrator.step.value
     reason = (
-        f"{type(best.integrator).__name__} {best.integrator.shares.name}, cheapest of {others + 1} methods for {accuracy:g} after {span(end)}, by trials over {span(time)}: "
-        f"{problem.fastest / best.integrator.step.value:.3g} steps in the fastest orbit of {span(problem.fastest)}"
+        f"{type(best.integrator).__name__} {best.integrator.shares.name}, cheapest of {others + 1} methods for "
+        f"{accuracy:g} after {span(end)}, by trials over {span(time)}: {steps:.3g} steps in the fastest orbit of "
+        f"{span(problem.fastest)}"
     )
     return Plan(best.integrator, best.power, best.error if time == end else 0.0, reason)
 

@@ -149,7 +149,10 @@ def _to_accuracy(
         outcome = run.outcome()
         if outcome.status != "completed":
             return _trajectory(system, state, plan.integrator, outcome, accuracy=asked, choice=plan.reason)
-        found = problem.estimate(plan, outcome.motion, outcome.step, end, asked)
+        try:
+            found = problem.estimate(plan, outcome.motion, outcome.step, end, asked)
+        except KeyboardInterrupt:  # what has been computed is kept
+            found = None
         if found is None or found.within(asked):
             error = None if found is None else found.error
             return _trajectory(
