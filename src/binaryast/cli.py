@@ -115,7 +115,7 @@ def parser() -> argparse.ArgumentParser:
     running.add_argument("--step", metavar="TIME", help="largest step, such as 40s")
     running.add_argument("--save-every", metavar="TIME", help="time between saved rows, such as 10min")
     running.add_argument("--degree", type=int, metavar="N", help="degree of gravity: 0 (point masses), or 2 to 16")
-    running.add_argument("--integrator", choices=("LGVI", "RungeKutta"), help="method (default: LGVI)")
+    running.add_argument("--integrator", choices=("LGVI", "RungeKutta", "Taylor"), help="method (default: LGVI)")
     running.add_argument("--order", type=int, choices=(2,), default=2, help="order of the method (default: 2)")
     running.add_argument("--frame", choices=("relative", "inertial"), help="whose variables are stepped")
     _file(running.add_argument("-o", "--output", metavar="FILE.h5", help="where to write (default: NAME.h5 here)"))
@@ -326,7 +326,7 @@ def _gravity_of_degree(degree: int) -> "Gravity":
 
 def _integrator(before: "Integrator", step: Any, options: argparse.Namespace) -> "Integrator":
     """Return the integrator that the options ask for, the scenario's or the earlier run's where they do not."""
-    from binaryast.integrators import LGVI, RungeKutta, Stepping
+    from binaryast.integrators import LGVI, RungeKutta, Stepping, Taylor
 
     if step is None and options.integrator is None and options.frame is None:
         return before
@@ -335,6 +335,11 @@ def _integrator(before: "Integrator", step: Any, options: argparse.Namespace) ->
     if kind == "RungeKutta":
         tight = before if isinstance(before, RungeKutta) else RungeKutta()
         return RungeKutta(tight.rtol, tight.atol, tight.step if step is None else step, tight.method, frame)
+    if kind == "Taylor":
+        for option, value in (("--step", step), ("--frame", options.frame)):
+            if value is not None:
+                raise InputError(f"{option}: Taylor chooses its steps itself, in the inertial frame: leave it out")
+        return before if isinstance(before, Taylor) else Taylor()
     if step is None and isinstance(before, Stepping):
         step = before.step
     if step is None:
