@@ -63,9 +63,9 @@ def test_formulas_are_the_compiled_potentials(system: System) -> None:
     strength = of_pair.strength / LENGTH
     values = [exerted.energy * strength, *np.multiply(exerted.gradient, strength / LENGTH)]
     u0, *rest = system.attraction(X, R)
-    np.testing.assert_allclose(values, [u0, *rest[:3]], rtol=1e-14, atol=0)
+    np.testing.assert_allclose(values, [u0, *rest[:3]], rtol=8e-15, atol=0)
     size = np.abs(rest[3:]).max()
-    np.testing.assert_allclose(np.multiply(exerted.moment, strength), rest[3:], rtol=0, atol=6e-15 * size)
+    np.testing.assert_allclose(np.multiply(exerted.moment, strength), rest[3:], rtol=0, atol=8e-15 * size)
 
 
 def test_what_is_carried_turns_with_the_body() -> None:
@@ -123,7 +123,7 @@ def test_a_pair_is_where_quadruple_precision_says(name: str) -> None:
 @pytest.mark.parametrize("case", [ba.catalogue.load("sn263"), four_bodies()], ids=["sn263", "four"])
 def test_several_bodies(case: tuple[System, State]) -> None:
     one, two = (run(case, 6, integrator) for integrator in (ba.Taylor(), ba.RungeKutta(2.3e-14, 2.3e-14)))
-    assert difference(snapshot_of(one[-1]), snapshot_of(two[-1])).largest < 3e-12  # Runge-Kutta's
+    assert difference(snapshot_of(one[-1]), snapshot_of(two[-1])).largest < 2e-12  # Runge-Kutta's
     one.check(energy=1e-14, momentum=1e-14, rotation=1e-14)
     assert two.steps > 3 * one.steps
 
@@ -138,7 +138,7 @@ def test_rows_between_steps_are_as_accurate_as_steps() -> None:
     for k in (1, 7, 13):
         ending_there = run(case, k / 2)
         assert ending_there.si.time[-1] == rows.si.time[k]
-        assert difference(snapshot_of(rows[k]), snapshot_of(ending_there[-1])).largest < 3e-14
+        assert difference(snapshot_of(rows[k]), snapshot_of(ending_there[-1])).largest < 1e-14
 
 
 @needs_heyoka
