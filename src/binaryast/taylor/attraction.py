@@ -5,7 +5,7 @@ Lengths are over a unit of length, and what is exerted over G m1 m2.
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from math import factorial
+from math import factorial, sqrt
 from typing import TypeAlias
 
 import numpy as np
@@ -38,7 +38,7 @@ class Formula(ABC):
 
     @abstractmethod
     def carried(self, r: Floats) -> list[float]:
-        """Return what the relative spin carries round, at an attitude R (3, 3); zeros of a body that has none."""
+        """Return what the relative spin carries round, at an attitude R (3, 3)."""
 
     @abstractmethod
     def rates(self, carried: Numbers, spin: Numbers) -> list[Number]:
@@ -139,15 +139,16 @@ def formula_of(system: System, pair: Pair, length: float) -> Formula:
 
 
 def _units(system: System, pair: Pair, length: float, degree: int) -> list[float]:
-    """Return the units of the secondary's moments: I a^(l - 2)/l!, a being the distance at which both may touch.
+    """Return the units of the secondary's moments: I a^(l - 2)/l!, where a is the distance at which both may touch.
 
-    A torque is G m1 m2 times S_l of order l!/a^(l + 1) times moments, and turns the body by its part of I.
+    At a distance a, a torque of degree l is of order l!/a^(l + 1) times moments, and turns the body the more the less
+    its moment of inertia I is. A body without a surface is taken to have the size that its I says.
     """
     one, two = system.bodies[pair.secondary], system.bodies[pair.primary]
-    reach = (one.bounding_radius + two.bounding_radius) / length
     inertia = float(np.mean(one.si.moments)) / one.si.mass / length**2
-    if not (inertia > 0 and 0 < reach < np.inf):
+    if inertia == 0:  # a point
         return [1.0] * (degree + 1)
+    reach = max((one.bounding_radius + two.bounding_radius) / length, sqrt(inertia))
     return [1.0, 1.0, *(power_of_two(inertia * reach ** (l - 2) / factorial(l)) for l in range(2, degree + 1))]
 
 

@@ -120,9 +120,7 @@ class Formulas:
             *(component for body in bodies for component in body.v),  # (26)
             *(component for acceleration in accelerations for component in acceleration),  # (25)
             *(rate for body in bodies for rate in scaled(0.5, product(body.q, [*body.spin, 0.0]))),  # (28)
-            *(
-                rate for i, body in enumerate(bodies) for rate in self._of_spin(i, body.spin, turns[i], constant)
-            ),  # (27)
+            *(rate for i, turn in enumerate(turns) for rate in self._of_spin(i, bodies[i], turn, constant)),  # (27)
         ]
         return [*(every[k] for k in self.changing), *of_carried]
 
@@ -144,9 +142,9 @@ class Formulas:
         scale = strength * self.time**2 / self.length
         return scale / si.mass / self.length**2, [scale / moment if moment > 0 else 0.0 for moment in si.moments]
 
-    def _of_spin(self, body: int, spin: Numbers, turn: Numbers, constant: Constant) -> list[Number]:
+    def _of_spin(self, body: int, place: Place, turn: Numbers, constant: Constant) -> list[Number]:
         """Return the rates of a spin: what the body's own turning does to it, and a torque over its moments."""
         _, differences = ratios(self.system.bodies[body].si.moments)
         own = [constant(float(k)) for k in differences]
-        (x, y, z), (a, b, c) = spin, own
+        (x, y, z), (a, b, c) = place.spin, own
         return added((a * (y * z), b * (z * x), c * (x * y)), turn)
