@@ -7,10 +7,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import astropy.units as u
 import pytest
 
 import binaryast as ba
-from binaryast import cli
+from binaryast import cli, integrators
 
 
 def files(folder: Path) -> list[str]:
@@ -145,6 +146,13 @@ WRONG = {
     "an unknown option": (["--stp", "40s"], "unrecognized arguments"),
     "an unknown integrator": (["--integrator", "RK4"], "invalid choice"),
     "an order that is not there": (["--order", "3"], "invalid choice"),
+    "an order of a splitting": (["--integrator", "Splitting", "--order", "4"], "--order: Splitting does not take it"),
+    "a scheme of another method": (
+        ["--integrator", "Splitting", "--scheme", "rkn8"],
+        "did you mean 'rkn4'?; there are",
+    ),
+    "a scheme of another order": (["--order", "8", "--scheme", "kl6"], "scheme='kl6' has order 6, got order=8"),
+    "too long a step for order 8": (["--order", "8", "--step", "1h"], "only below 1.652 at order 8 (kl8)"),
     "degree 1": (["--degree", "1"], "--degree: expected 0 (point masses) or 2 to 16, got 1"),
     "degree -2": (["--degree", "-2"], "--degree: expected 0 (point masses) or 2 to 16, got -2"),
     "degree 40": (["--degree", "40"], "--degree: expected 0 (point masses) or 2 to 16, got 40"),
@@ -434,3 +442,30 @@ def test_frame_and_integrator(folder: Path, capsys: pytest.CaptureFixture) -> No
     assert cli.main(["run", "didymos.h5", "--integrator", "LGVI", *arguments]) == 2
     assert "--step" in capsys.readouterr().err
     assert cli.main(["run", "sn263", "--duration", "2h", "--no-picture"]) == 0  # its save_every is longer
+
+
+def test_list_integrators(capsys: pytest.CaptureFixture) -> None:
+    assert cli.main(["list", "--integrators"]) == 0
+    printed = capsys.readouterr().out
+    for name, kind in integrators.KINDS.items():
+        assert f"{name} " in printed
+        assert kind.title in printed
+        assert all(line in printed for line in kind.variants())
+    assert tuple(integrators.KINDS) == cli.INTEGRATORS
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        (["--step", "100s", "--order", "8"], ba.LGVI(100 * u.s, order=8)),
+        (["--scheme", "yoshida4"], ba.LGVI(40 * u.s, scheme="yoshida4")),
+        (["--integrator", "Splitting", "--step", "20min"], ba.Splitting(20 * u.min)),
+        (["--integrator", "Splitting", "--frame", "inertial"], ba.Splitting(40 * u.s, frame="inertial")),
+        (["--integrator", "KeplerSplitting", "--scheme", "aba104"], ba.KeplerSplitting(40 * u.s, scheme="aba104")),
+    ],
+)
+def test_integrators_by_options(folder: Path, options: list[str], expected: ba.LGVI) -> None:
+    assert cli.main(["run", "didymos", "--duration", "1h", "--no-picture", *options]) == 0
+    run = ba.Trajectory.read("didymos.h5")
+    assert repr(run.integrator) == repr(expected)
+    assert run.step <= expected.step * (1 + 1e-9)

@@ -263,7 +263,18 @@ def test_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: p
     assert json.loads(capsys.readouterr().out)["integrator"] == "Taylor(tolerance=1e-16, compact=True)"
     for option in (["--step", "40s"], ["--frame", "relative"]):
         assert cli.main(["run", "didymos", "--integrator", "Taylor", *option, *arguments]) == 2
-        assert f"{option[0]}: Taylor chooses its steps itself" in json.loads(capsys.readouterr().out)["message"]
+        assert f"{option[0]}: Taylor does not take it" in json.loads(capsys.readouterr().out)["message"]
+
+
+def test_scenario_file() -> None:
+    text = ba.catalogue.text("dumbbells")
+    with_table = text.replace("[run]", "[run]\nintegrator = { type = 'Taylor', tolerance = 1e-12 }")
+    with pytest.raises(InputError, match=r"run\.step: Taylor chooses its steps itself: leave it out"):
+        ba.scenario.loads(with_table, name="x", where="x")
+    without_step = "\n".join(line for line in with_table.splitlines() if not line.startswith("step"))
+    assert (
+        repr(ba.scenario.loads(without_step, name="x", where="x").integrator) == "Taylor(tolerance=1e-12, compact=True)"
+    )
 
 
 def test_what_takes_long_is_said(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,7 @@ import re
 import sys
 import warnings
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 FAILED, WRONG_INPUT, INTERRUPTED = 1, 2, 130
 RUN = ".h5"  # the suffix of a run
+INTEGRATORS = ("LGVI", "Splitting", "KeplerSplitting", "RungeKutta", "Taylor")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -101,7 +102,8 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--version", action="version", version=f"binaryast {VERSION}")
     commands = top.add_subparsers(title="commands", metavar="COMMAND", required=True)
 
-    listing = commands.add_parser("list", help="the systems of the catalogue")
+    listing = commands.add_parser("list", help="the systems of the catalogue, or the integrators")
+    listing.add_argument("--integrators", action="store_true", help="the integrators, with their orders and properties")
     listing.set_defaults(command=_list)
 
     showing = commands.add_parser("show", help="what the catalogue knows of a system, or a scenario file says")
@@ -115,8 +117,9 @@ def parser() -> argparse.ArgumentParser:
     running.add_argument("--step", metavar="TIME", help="largest step, such as 40s")
     running.add_argument("--save-every", metavar="TIME", help="time between saved rows, such as 10min")
     running.add_argument("--degree", type=int, metavar="N", help="degree of gravity: 0 (point masses), or 2 to 16")
-    running.add_argument("--integrator", choices=("LGVI", "RungeKutta", "Taylor"), help="method (default: LGVI)")
-    running.add_argument("--order", type=int, choices=(2,), default=2, help="order of the method (default: 2)")
+    running.add_argument("--integrator", choices=INTEGRATORS, help="method (default: LGVI)")
+    running.add_argument("--order", type=int, choices=(2, 4, 6, 8, 10), help="order of LGVI (default: 2)")
+    running.add_argument("--scheme", metavar="NAME", help="scheme, of those of binaryast list --integrators")
     running.add_argument("--frame", choices=("relative", "inertial"), help="whose variables are stepped")
     _file(running.add_argument("-o", "--output", metavar="FILE.h5", help="where to write (default: NAME.h5 here)"))
     running.add_argument("--no-picture", action="store_true", help="write no picture beside the file")
@@ -164,21 +167,36 @@ def _scenario(system: str) -> "Scenario":
         raise InputError(f"{system} is a run, not a scenario: draw it with binaryast plot, go on with binaryast run")
     if not _is_file(system):
         catalogue.text(system)  # an unknown name is said before anything is compiled
-    _say_if_cold()
     return scenario.load(system) if _is_file(system) else catalogue.entry(system)
 
 
-def _list(_: argparse.Namespace) -> int:
+def _list(options: argparse.Namespace) -> int:
     from binaryast import catalogue
 
+    if options.integrators:
+        return _list_integrators()
     for name in catalogue.names():
         print(f"{name:12} {catalogue.title(name)}")
+    return 0
+
+
+def _list_integrators() -> int:
+    """Print each integrator, what it keeps and takes, and its variants."""
+    from binaryast.integrators import KINDS
+
+    for name, kind in KINDS.items():
+        kept = [word for word, has in (("symplectic", kind.symplectic), ("reversible", kind.reversible)) if has]
+        taken = "any number of bodies" if kind.several else "pairs"
+        print(f"{name:16} {kind.title}; {', '.join([*kept, taken])}")
+        for line in kind.variants():
+            print(f"    {line}")
     return 0
 
 
 def _show(options: argparse.Namespace) -> int:
     import numpy as np
 
+    from binaryast.integrators import Stepping
     from binaryast.units import span
 
     entry = _scenario(options.system)
@@ -199,7 +217,8 @@ def _show(options: argparse.Namespace) -> int:
         print(f"  gravity{line}")
     distances = np.linalg.norm(entry.state.si.position[1:] - entry.state.si.position[0], axis=1)
     print(f"  start: separation {', '.join(f'{d:.8g}' for d in distances)} m, axes {entry.state.frame}")
-    print(f"  by default: {span(entry.duration.value)} in steps of {entry.integrator.step.value:g} s")
+    steps = f" in steps of {entry.integrator.step.value:g} s" if isinstance(entry.integrator, Stepping) else ""
+    print(f"  by default: {span(entry.duration.value)}{steps}, by {type(entry.integrator).__name__}")
     for source in entry.sources:
         more = "".join(f"; {key}: {source[key]}" for key in ("uncertainty", "note") if key in source)
         print(f"  {source['what']}: {source['source']}{more}")
@@ -326,33 +345,31 @@ def _gravity_of_degree(degree: int) -> "Gravity":
 
 def _integrator(before: "Integrator", step: Any, options: argparse.Namespace) -> "Integrator":
     """Return the integrator that the options ask for, the scenario's or the earlier run's where they do not."""
-    from binaryast.integrators import LGVI, RungeKutta, Stepping, Taylor
+    from binaryast.integrators import KINDS, LGVI, Stepping
 
-    if step is None and options.integrator is None and options.frame is None:
+    asked = {
+        name: getattr(options, name) for name in ("order", "scheme", "frame") if getattr(options, name) is not None
+    }
+    if step is None and options.integrator is None and not asked:
         return before
-    kind = options.integrator or ("LGVI" if step is not None else type(before).__name__)
-    frame = before.frame if options.frame is None else options.frame
-    if kind == "RungeKutta":
-        tight = before if isinstance(before, RungeKutta) else RungeKutta()
-        return RungeKutta(tight.rtol, tight.atol, tight.step if step is None else step, tight.method, frame)
-    if kind == "Taylor":
-        for option, value in (("--step", step), ("--frame", options.frame)):
-            if value is not None:
-                raise InputError(f"{option}: Taylor chooses its steps itself, in the inertial frame: leave it out")
-        return before if isinstance(before, Taylor) else Taylor()
-    if step is None and isinstance(before, Stepping):
-        step = before.step
-    if step is None:
-        raise InputError("--step: say how large the steps of LGVI may be, such as 40s")
-    return LGVI(step, order=options.order, frame=frame)
-
-
-def _say_if_cold() -> None:
-    """Say why the first run on a machine takes longer."""
-    from binaryast.kernels.jit import is_cold
-
-    if is_cold():
-        print("binaryast: compiling, once on this machine; this takes some ten seconds", file=sys.stderr)
+    default = type(before) if step is None and set(asked) <= {"frame"} else LGVI  # --step alone: LGVI of order 2
+    kind = KINDS[options.integrator] if options.integrator else default
+    arguments = before.arguments() if kind is type(before) and not issubclass(kind, Stepping) else {}
+    if issubclass(kind, Stepping):
+        frame = getattr(before, "frame", None) if kind is not KINDS["KeplerSplitting"] else None
+        arguments = {} if frame is None else {"frame": frame}
+        if step is None and isinstance(before, Stepping):
+            step = before.step
+        if step is None:
+            raise InputError(f"--step: say how large the steps of {kind.__name__} may be, such as 40s")
+    if step is not None:
+        arguments["step"] = step
+    arguments |= asked
+    known = [field.name for field in fields(kind) if field.init]  # type: ignore[arg-type]
+    for name in arguments:
+        if name not in known:
+            raise InputError(f"--{name}: {kind.__name__} does not take it: see 'binaryast list --integrators'")
+    return kind(**arguments)
 
 
 def _propagate(

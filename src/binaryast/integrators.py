@@ -37,8 +37,14 @@ class Integrator(Value, ABC):
         relative frame for a pair and the inertial one for several bodies.
     symplectic, reversible, adaptive : bool
         Its properties.
+    several : bool
+        Whether it takes more than two bodies.
+    title : str
+        What it is, in a line.
     """
 
+    title: ClassVar[str]
+    several: ClassVar[bool] = True
     frame: str | None
     symplectic: ClassVar[bool]
     reversible: ClassVar[bool]
@@ -67,6 +73,11 @@ class Integrator(Value, ABC):
         """Raise an `InputError` where it cannot follow this system from here."""
         self.is_inertial(len(system.bodies))
 
+    @classmethod
+    def variants(cls) -> list[str]:
+        """Return what there is to choose, a line each."""
+        return []
+
 
 class Stepping(Integrator):
     """An integrator whose equal steps are compiled: kicks by gravity and drifts without it, in turn.
@@ -79,16 +90,20 @@ class Stepping(Integrator):
         The shares of a step that its kicks and drifts have.
     largest_turn : float
         The turn h Omega [rad] at and above which a step has no solution; infinite where there always is one.
+    changed : Scheme or None
+        The change of variables in which the steps are taken, undone for each saved row.
     """
 
     step: Quantity
     shares: Scheme
     largest_turn: float
+    changed: Scheme | None = None
 
     symplectic: ClassVar[bool] = True
     reversible: ClassVar[bool] = True
     adaptive: ClassVar[bool] = False  # type: ignore[misc]
     schemes: ClassVar[dict[str, Scheme]]
+    exact_rotation: ClassVar[bool] = True
 
     @property
     def order(self) -> int:
@@ -98,6 +113,16 @@ class Stepping(Integrator):
     @abstractmethod
     def kernel(self, *, inertial: bool) -> Callable[..., Any]:
         """Return the compiled step of a pair in the relative frame, or of any number of bodies in the inertial one."""
+
+    @classmethod
+    def variants(cls) -> list[str]:
+        """Return its schemes, a line each."""
+        return [
+            f"scheme={name:10} order {scheme.order:2}, {scheme.evaluations:2} evaluations of gravity a step"
+            + ("" if cls.exact_rotation else f", h Omega < {1 / scheme.longest:.3g}")
+            + f"   {scheme.source}"
+            for name, scheme in cls.schemes.items()
+        ]
 
     def _check(self) -> None:
         """Take the unit off the step, and raise for a scheme or a frame that there is not."""
@@ -165,7 +190,9 @@ class LGVI(Stepping):
     frame: str | None = None
     scheme: str | None = None
 
+    title: ClassVar[str] = "the Lie group variational integrator and its compositions"
     schemes: ClassVar[dict[str, Scheme]] = schemes.COMPOSITIONS
+    exact_rotation: ClassVar[bool] = False
     by_order: ClassVar[dict[int, str]] = {2: "leapfrog", 4: "suzuki4", 6: "kl6", 8: "kl8", 10: "ss10"}
 
     def __post_init__(self) -> None:
@@ -242,6 +269,7 @@ class Splitting(Stepping):
     scheme: str = "rkn6a"
     frame: str | None = None
 
+    title: ClassVar[str] = "free motion with exact rotation, and kicks by gravity"
     schemes: ClassVar[dict[str, Scheme]] = schemes.SPLITTINGS
     largest_turn: ClassVar[float] = inf  # type: ignore[misc]
 
@@ -285,34 +313,57 @@ class KeplerSplitting(Stepping):
     scheme : {"aba864", "aba104", "aba1064"}
         ABA(8, 6, 4), ABA(10, 4), ABA(10, 6, 4), with 7, 7 and 8 evaluations of gravity a step (and one more at its end,
         to look at the energy).
+    corrector : bool
+        Whether to follow the motion in variables in which the errors of ABA(10, 4) of order eps^2 h^4 are twenty times
+        smaller, for that scheme only. The change of variables is symplectic, and made at the start and for each saved
+        row, so it costs next to nothing; the figure of the energy is then that of the rows. It lowers the energy's
+        error up to 25 times and that of the position 2 to 6 times; a tumbling body's attitude, whose error is of order
+        eps^3, gains nothing.
 
     Raises
     ------
     InputError
-        For a step that is not a positive time or another scheme; when a run begins, for a system that is no bound pair.
+        For a step that is not a positive time, another scheme or one without a corrector; when a run begins, for a
+        system that is no bound pair.
 
     References
     ----------
-    S. Blanes, F. Casas, A. Farres, J. Laskar, J. Makazaga, A. Murua, Appl. Numer. Math. 68 (2013) 58; J. Wisdom,
-    M. Holman, Astron. J. 102 (1991) 1528; J. Touma, J. Wisdom, Astron. J. 107 (1994) 1189.
+    S. Blanes, F. Casas, A. Farres, J. Laskar, J. Makazaga, A. Murua, Appl. Numer. Math. 68 (2013) 58; J. Wisdom, M.
+    Holman, Astron. J. 102 (1991) 1528; J. Touma, J. Wisdom, Astron. J. 107 (1994) 1189; R. I. McLachlan, ANZIAM J. 38
+    (1996) 84, on correctors.
 
     Examples
     --------
     >>> import astropy.units as u
     >>> import binaryast as ba
     >>> ba.KeplerSplitting(step=30 * u.min)
-    KeplerSplitting(step=<Quantity 1800. s>, scheme='aba864')
+    KeplerSplitting(step=<Quantity 1800. s>, scheme='aba864', corrector=False)
     """
 
     step: Quantity
     scheme: str = "aba864"
+    corrector: bool = False
 
+    title: ClassVar[str] = "Kepler motion with exact rotation, and kicks by the rest of gravity, for bound pairs"
+    several: ClassVar[bool] = False
     frame: ClassVar[str] = "relative"  # type: ignore[misc]
     schemes: ClassVar[dict[str, Scheme]] = schemes.KEPLER_SPLITTINGS
     largest_turn: ClassVar[float] = inf  # type: ignore[misc]
 
     def __post_init__(self) -> None:
         self._check()
+        if not isinstance(self.corrector, bool):
+            raise InputError(f"KeplerSplitting: corrector={brief(repr(self.corrector))}: expected True or False")
+        if self.corrector and self.scheme not in schemes.CORRECTORS:
+            known = ", ".join(schemes.CORRECTORS)
+            raise InputError(
+                f"KeplerSplitting: corrector=True: scheme={self.scheme!r} has none; there is one of {known}"
+            )
+
+    @property
+    def changed(self) -> Scheme | None:  # type: ignore[override]
+        """The change of variables at the start of a run, None without a corrector."""
+        return schemes.CORRECTORS[self.scheme] if self.corrector else None
 
     @property
     def shares(self) -> Scheme:  # type: ignore[override]
@@ -388,6 +439,7 @@ class RungeKutta(Integrator):
     method: str = "DOP853"
     frame: str | None = None
 
+    title: ClassVar[str] = "SciPy's Runge-Kutta methods on the equations as printed, to compare with"
     symplectic: ClassVar[bool] = False
     reversible: ClassVar[bool] = False
     orders: ClassVar[dict[str, int]] = {"DOP853": 8, "RK45": 5, "RK23": 3}
@@ -411,6 +463,14 @@ class RungeKutta(Integrator):
     def order(self) -> int:
         """Order of the error in the step."""
         return self.orders[self.method]
+
+    @classmethod
+    def variants(cls) -> list[str]:
+        """Return its methods, a line each."""
+        return [
+            f"method={name:10} order {order:2}, steps by tolerances or of a fixed size"
+            for name, order in cls.orders.items()
+        ]
 
     @property
     def adaptive(self) -> bool:  # type: ignore[override]
@@ -475,6 +535,7 @@ class Taylor(Integrator):
     tolerance: float = 1e-16
     compact: bool = True
 
+    title: ClassVar[str] = "Taylor series by heyoka, to round-off over short arcs"
     frame: ClassVar[str] = "inertial"  # type: ignore[misc]
     symplectic: ClassVar[bool] = False
     reversible: ClassVar[bool] = False
@@ -495,8 +556,18 @@ class Taylor(Integrator):
         """Order of the series, as heyoka chooses it."""
         return max(2, ceil(1 - log(self.tolerance) / 2))
 
+    @classmethod
+    def variants(cls) -> list[str]:
+        """Return what there is to choose, a line each."""
+        return [f"order {cls().order} at tolerance={cls().tolerance:g}, steps by the tolerance"]
+
 
 def check_frame(frame: Any, name: str) -> None:
     """Raise for a frame that there is not."""
     if frame is not None and (not isinstance(frame, str) or frame not in FRAMES):
         raise InputError(f"{name}: frame={brief(repr(frame))}: expected one of {', '.join(FRAMES)}")
+
+
+KINDS: dict[str, type[Integrator]] = {
+    kind.__name__: kind for kind in (LGVI, Splitting, KeplerSplitting, RungeKutta, Taylor)
+}

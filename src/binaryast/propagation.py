@@ -153,14 +153,16 @@ def _check_turns(system: System, state: State, integrator: Stepping, step: float
     for body, spin in zip(system.bodies, np.linalg.norm(state.si.spin, axis=1), strict=True):
         if step * spin >= integrator.largest_turn:
             raise turn_error(body.name, float(spin), integrator, step)
-        turn = step * integrator.shares.longest * spin
-        if turn > DOUBTFUL_TURN:
-            lead = f"its attitude will run ahead by about {turn**3 / 6:.2g} rad a step"
-            part = "" if integrator.order == 2 else f"the longest part, {turn / spin:.3g} s, of "
+        part = step * integrator.shares.longest
+        turn = part * spin
+        if turn > (DOUBTFUL_TURN if integrator.order <= 4 else 2 * DOUBTFUL_TURN):
+            what, remedy = f"the longest part, {part:.3g} s, of a step of {step:g} s", "a shorter step mends that"
+            lead = "its attitude may be far off"
+            if integrator.order == 2:
+                what, remedy = f"a step of {step:g} s", f"{0.05 / spin:.3g} s would turn it by 0.05 rad"
+                lead = f"its attitude will run ahead by about {turn**3 / 6:.2g} rad a step"
             warnings.warn(
-                f"{part}a step of {step:g} s turns {body.name} by {turn:.2g} rad: "
-                f"{lead if integrator.order == 2 else 'its attitude may be far off'}; {0.05 * step / turn:.3g} s would "
-                "turn it by 0.05 rad, and ba.Splitting turns it exactly",
+                f"{what} turns {body.name} by {turn:.2g} rad: {lead}; {remedy}, and ba.Splitting turns it exactly",
                 StepWarning,
                 stacklevel=4,
             )

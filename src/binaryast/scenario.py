@@ -49,6 +49,7 @@ none::
     duration = "5 d"
     step = "20 s"
     save_every = "10 min"                         # may be left out
+    integrator = { type = "LGVI", order = 8 }     # so may this: LGVI of order 2
 """
 
 import inspect
@@ -66,7 +67,7 @@ from binaryast import coefficients, gravity, shapes, unions
 from binaryast.adaptive import Adaptive
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError, ScenarioError, StorageError, did_you_mean
-from binaryast.integrators import LGVI
+from binaryast.integrators import KINDS, Integrator, Stepping
 from binaryast.layered import Layered
 from binaryast.orbits import Orbit
 from binaryast.polyhedron import Polyhedron
@@ -111,6 +112,7 @@ PLAIN = (  # arguments that have no unit
     *("weights", "parts", "table", "C", "S", "normalised", "condon_shortley", "turn", "degree"),
     *("density_ratio", "outer", "inner", "file", "facets", "unit", "mend"),
     *("accuracy", "near", "far", "parallel"),
+    *("order", "scheme", "method", "rtol", "atol", "tolerance"),
     *("eccentricity", "about", "R", "R2", "attitude", "epoch", "frame"),
 )
 EXAMPLES = {  # what a text with a unit looks like
@@ -146,7 +148,7 @@ class Scenario(Value):
         The file's stem, and one line.
     system, state : System, State
         The bodies, their gravity and where they start.
-    integrator : LGVI
+    integrator : Integrator
         How to run it.
     duration, save_every : Quantity
         How long, and how often to save; ``save_every`` may be None.
@@ -160,7 +162,7 @@ class Scenario(Value):
     title: str
     system: System
     state: State
-    integrator: LGVI
+    integrator: Integrator
     duration: Quantity
     save_every: Quantity | None
     sources: tuple[dict[str, str], ...] = field(repr=False)
@@ -221,14 +223,14 @@ def _scenario(tables: dict[str, Any], name: str, text: str, folder: Path) -> Sce
     models = _gravity(_table(tables, "gravity"))
     system = System([_body(body, f"bodies[{i}]", folder) for i, body in enumerate(bodies)], models)
     run = _table(tables, "run")
-    _known(run, ("duration", "step", "save_every"), "run.")
-    _needed(run, ("duration", "step"), "run.")
+    _known(run, ("duration", "step", "save_every", "integrator"), "run.")
+    _needed(run, ("duration",), "run.")
     return Scenario(
         name=name,
         title=_text(tables.get("title", name), "title"),
         system=system,
         state=_state(_table(tables, "state"), system),
-        integrator=LGVI(_time(run["step"], "run.step")),
+        integrator=_integrator(run),
         duration=_time(run["duration"], "run.duration"),
         save_every=_time(run["save_every"], "run.save_every") if "save_every" in run else None,
         sources=_sources(tables.get("sources", [])),
@@ -316,6 +318,19 @@ def _typed(table: dict[str, Any], kinds: dict[str, Any], where: str) -> Any:
     kind = kinds[_choice(table, kinds, where)]
     arguments = {key: value for key, value in table.items() if key != "type"}
     return _call(kind, {}, arguments, where)
+
+
+def _integrator(run: dict[str, Any]) -> Integrator:
+    """Return how to run it: the integrator's table, its step beside it."""
+    table = _table(run, "integrator", "run.") or {"type": "LGVI"}
+    kind = KINDS[_choice(table, KINDS, "run.integrator")]
+    arguments = {key: value for key, value in table.items() if key != "type"}
+    if "step" not in run and issubclass(kind, Stepping):
+        raise InputError("run.step is missing")
+    if "step" in run and "step" not in inspect.signature(kind).parameters:
+        raise InputError(f"run.step: {kind.__name__} chooses its steps itself: leave it out")
+    step = {"step": _time(run["step"], "run.step")} if "step" in run else {}
+    return _call(kind, step, arguments, "run.integrator")  # type: ignore[no-any-return]
 
 
 def _state(table: dict[str, Any], system: System) -> State:

@@ -87,6 +87,9 @@ class SteppedRun:
         rows = np.empty((segment.steps // segment.stride, self.working.row_size))
         self.rows.append(rows)
         watch = self.watch.array
+        energy_error = float(watch[loop.ENERGY_ERROR])
+        if self.integrator.changed is not None:
+            self._change(self.integrator.changed.shares, segment.step)
         watch[loop.STEPS] = 0
         chunk = 16
         while (left := segment.steps - int(watch[loop.STEPS])) and self.code == status.COMPLETED and not self.pressed:
@@ -97,7 +100,28 @@ class SteppedRun:
             self.wall_time += spent
             chunk = max(1, min(100 * count, int(count * CHUNK_SECONDS / max(spent, 1e-6))))
             show(self.elapsed + watch[loop.STEPS] * segment.step)
+        if self.integrator.changed is not None:
+            watch[loop.ENERGY_ERROR] = energy_error
+            self._change_back(-self.integrator.changed.shares[::-1], segment)
         self._keep(segment)
+
+    def _change(self, shares: Floats, step: float) -> None:
+        """Change the variables of the working state, or change them back."""
+        w = self.working
+        self.kernel(w.state, w.constants, np.ascontiguousarray(shares), w.attraction, w.parameters, step)
+
+    def _change_back(self, shares: Floats, segment: Segment) -> None:
+        """Change the variables of the rows of a segment and of the state at its end back, and watch their energy."""
+        w = self.working
+        end, rows = w.state.copy(), self.rows[-1]
+        for k in range(int(self.watch.array[loop.STEPS]) // segment.stride):
+            w.state[:] = 0
+            w.state[: w.row_size] = rows[k]
+            self._change(shares, segment.step)
+            self.watch.look(w.measure(w.state, w.constants))
+            rows[k] = w.state[: w.row_size]
+        w.state[:] = end
+        self._change(shares, segment.step)
 
     def _advance(self, segment: Segment, count: int, rows: Floats) -> int:
         """Call the compiled loop; a potential of the user's that raises ends the run like any other trouble."""

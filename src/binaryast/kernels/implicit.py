@@ -1,18 +1,27 @@
 """The implicit equation of the rotation, F J_d - J_d F^T = S(g): (128)-(130).
 
-`solve` is the paper's: exponential coordinates, any inertia matrix. `solve_cayley` is the same equation in the body's
-principal axes and Cayley coordinates, where it is a polynomial; the production steps use it. About a principal axis
-both say sin(theta) = h Omega, theta being the turn in one step: there is no solution for h Omega >= 1. About other
-axes the branch of small turns ends somewhat later; both refuse g from h Omega = |J^-1 g| = 1 on for every axis, for
-beyond it another branch may lie nearer.
+`solve` is the paper's: exponential coordinates, any inertia matrix. `solve_cayley` and `solve_both` are the same
+equation in the body's principal axes and Cayley coordinates, for one body and two; the production steps use them. About
+a principal axis both say sin(theta) = h Omega, theta being the turn in one step: there is no solution for h Omega >= 1.
+About other axes the branch of small turns ends somewhat later; both refuse g from h Omega = |J^-1 g| = 1 on for every
+axis, for beyond it another branch may lie nearer.
 """
 
+from functools import partial
 from math import asin, sqrt
+from typing import Any, TypeAlias
 
 import numpy as np
+from numba import types
+from numba.extending import intrinsic
 
+from binaryast.kernels import cayley_equation
 from binaryast.kernels.jit import Array, Vector, jit
 from binaryast.kernels.so3 import hat, rodrigues_coefficients, solve_linear
+from binaryast.kernels.symbols import written_out, written_out_twice
+
+IMPROVED = types.UniTuple(types.float64, 5)
+Improvement: TypeAlias = tuple[float, float, float, float, float]
 
 MOST_ITERATIONS = 20
 REMAINING = 1e-34  # square of the error left in Cayley coordinates, relative
@@ -72,57 +81,79 @@ def solve(inertia: Array, g: Array) -> tuple[Array, int]:
     return f, -1
 
 
+@intrinsic  # type: ignore[untyped-decorator]
+def begun(_: Any, a: Any, b: Any) -> Any:
+    """Return a first guess of c (3), the square of what is left in it, and the Jacobian's determinant."""
+    return IMPROVED(a, b), partial(written_out, cayley_equation.begun)
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def improved(_: Any, a: Any, b: Any, c: Any) -> Any:
+    """Return the same of better Cayley coordinates."""
+    return IMPROVED(a, b, c), partial(written_out, cayley_equation.improved)
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def both_begun(_: Any, a2: Any, a1: Any, b2: Any, b1: Any) -> Any:
+    """Return first guesses of two bodies, side by side."""
+    return types.UniTuple(IMPROVED, 2)(a2, a1, b2, b1), partial(written_out_twice, cayley_equation.begun)
+
+
+@intrinsic  # type: ignore[untyped-decorator]
+def both_improved(_: Any, a2: Any, a1: Any, b2: Any, b1: Any, c2: Any, c1: Any) -> Any:
+    """Return the same of better Cayley coordinates of two bodies, side by side."""
+    return types.UniTuple(IMPROVED, 2)(a2, a1, b2, b1, c2, c1), partial(written_out_twice, cayley_equation.improved)
+
+
+@jit()
+def half_turn(inverse_moments: Vector, g: Vector) -> tuple[Vector, bool]:
+    """Return a = J^-1 g/2, and whether (128) has a solution: it must be a number and h Omega = 2 |a| below 1."""
+    a = (0.5 * g[0] * inverse_moments[0], 0.5 * g[1] * inverse_moments[1], 0.5 * g[2] * inverse_moments[2])
+    return a, 4.0 * (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]) < 1.0
+
+
+@jit()
+def is_near(c: Improvement) -> bool:
+    """Whether what is left is no more than rounding, or nothing better can come: divergence, or not a number."""
+    square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2]
+    return c[3] <= REMAINING * square or not square < 100.0
+
+
+@jit()
+def is_solved(c: Improvement) -> bool:
+    """Whether what is left is no more than rounding, and the turn not beyond the largest that (128) can give."""
+    return c[3] <= REMAINING * (c[0] * c[0] + c[1] * c[1] + c[2] * c[2]) and c[4] > 0.0
+
+
 @jit()
 def solve_cayley(inverse_moments: Vector, ratios: Vector, g: Vector) -> tuple[Vector, int]:
-    """Solve (128) in principal axes for c, F being the rotation by 2 atan|c| about c.
+    """Solve (128) in principal axes for c: see ``cayley_equation.py``.
 
-    With F = cay(c), (128) is 2 (J c + c x J c) = (1 + c.c) g, three quadratic equations. Each iteration corrects twice
-    with one Jacobian (Potra and Ptak's third-order form of Newton's method); what remains after the first correction d
-    is exactly |d|^2 a + b d d, so it is formed without cancellation. Returns c and the number of iterations, -1 where
-    there is no solution on the branch of small turns.
+    Returns c and the number of iterations, -1 where there is no solution on the branch of small turns.
     """
-    i1, i2, i3 = inverse_moments
-    a1, a2, a3 = 0.5 * g[0] * i1, 0.5 * g[1] * i2, 0.5 * g[2] * i3
-    b1, b2, b3 = ratios
-    square = a1 * a1 + a2 * a2 + a3 * a3
-    if square == 0.0:
-        return (0.0, 0.0, 0.0), 0
-    if not 4.0 * square < 1.0:  # h Omega >= 1, or not a number
+    a, solvable = half_turn(inverse_moments, g)
+    if not solvable:
         return (0.0, 0.0, 0.0), -1
-    # exact for a spin about a principal axis; held back near the fold, where it would lead to the other branch
-    scale = 2.0 / (1.0 + sqrt(max(0.1, 1.0 - 4.0 * square)))
-    c1, c2, c3 = scale * a1, scale * a2, scale * a3
-    n = 1.0 + scale * scale * square
-    c1 = n * a1 + b1 * c2 * c3  # one pass of Gauss and Seidel
-    c2 = n * a2 + b2 * c3 * c1
-    c3 = n * a3 + b3 * c1 * c2
-    for iteration in range(1, MOST_ITERATIONS + 1):
-        n = 1.0 + c1 * c1 + c2 * c2 + c3 * c3
-        r1 = n * a1 + b1 * c2 * c3 - c1
-        r2 = n * a2 + b2 * c3 * c1 - c2
-        r3 = n * a3 + b3 * c1 * c2 - c3
-        m11, m12, m13 = 1.0 - 2.0 * a1 * c1, -2.0 * a1 * c2 - b1 * c3, -2.0 * a1 * c3 - b1 * c2
-        m21, m22, m23 = -2.0 * a2 * c1 - b2 * c3, 1.0 - 2.0 * a2 * c2, -2.0 * a2 * c3 - b2 * c1
-        m31, m32, m33 = -2.0 * a3 * c1 - b3 * c2, -2.0 * a3 * c2 - b3 * c1, 1.0 - 2.0 * a3 * c3
-        k11, k12, k13 = m22 * m33 - m23 * m32, m13 * m32 - m12 * m33, m12 * m23 - m13 * m22  # cofactors
-        k21, k22, k23 = m23 * m31 - m21 * m33, m11 * m33 - m13 * m31, m13 * m21 - m11 * m23
-        k31, k32, k33 = m21 * m32 - m22 * m31, m12 * m31 - m11 * m32, m11 * m22 - m12 * m21
-        determinant = m11 * k11 + m12 * k21 + m13 * k31
-        inverse = 1.0 / determinant
-        d1 = (k11 * r1 + k12 * r2 + k13 * r3) * inverse
-        d2 = (k21 * r1 + k22 * r2 + k23 * r3) * inverse
-        d3 = (k31 * r1 + k32 * r2 + k33 * r3) * inverse
-        first = d1 * d1 + d2 * d2 + d3 * d3
-        r1, r2, r3 = first * a1 + b1 * d2 * d3, first * a2 + b2 * d3 * d1, first * a3 + b3 * d1 * d2
-        e1 = (k11 * r1 + k12 * r2 + k13 * r3) * inverse
-        e2 = (k21 * r1 + k22 * r2 + k23 * r3) * inverse
-        e3 = (k31 * r1 + k32 * r2 + k33 * r3) * inverse
-        c1, c2, c3 = c1 + (d1 + e1), c2 + (d2 + e2), c3 + (d3 + e3)
-        second = e1 * e1 + e2 * e2 + e3 * e3
-        if not first < 100.0:  # divergence, or not a number
-            break
-        if first * second <= REMAINING * (c1 * c1 + c2 * c2 + c3 * c3):  # the next correction is about 2 |d| |e|
-            if determinant <= 0.0:  # beyond the largest turn that (128) can give
-                break
-            return (c1, c2, c3), iteration
-    return (c1, c2, c3), -1
+    c = begun(a, ratios)
+    iterations = 1
+    while not is_near(c) and iterations < MOST_ITERATIONS:
+        c = improved(a, ratios, (c[0], c[1], c[2]))
+        iterations += 1
+    return (c[0], c[1], c[2]), iterations if is_solved(c) else -1
+
+
+@jit()
+def solve_both(
+    inverse_2: Vector, ratios_2: Vector, g2: Vector, inverse_1: Vector, ratios_1: Vector, g1: Vector
+) -> tuple[Vector, Vector, bool, bool]:
+    """Solve (123) and (124) side by side; whether they have solutions are the last values."""
+    a2, solvable_2 = half_turn(inverse_2, g2)
+    a1, solvable_1 = half_turn(inverse_1, g1)
+    if not (solvable_2 and solvable_1):
+        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), solvable_2, solvable_1
+    c2, c1 = both_begun(a2, a1, ratios_2, ratios_1)
+    iterations = 1
+    while not (is_near(c2) and is_near(c1)) and iterations < MOST_ITERATIONS:
+        c2, c1 = both_improved(a2, a1, ratios_2, ratios_1, (c2[0], c2[1], c2[2]), (c1[0], c1[1], c1[2]))
+        iterations += 1
+    return (c2[0], c2[1], c2[2]), (c1[0], c1[1], c1[2]), is_solved(c2), is_solved(c1)

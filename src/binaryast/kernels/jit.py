@@ -8,6 +8,7 @@ signature (``@jit(SIGNATURE)``), compiled once and kept on disk. numba's own cac
 import contextlib
 import functools
 import hashlib
+import logging
 import os
 import shutil
 import sys
@@ -116,6 +117,10 @@ CACHE_FOLDER = _open_cache_folder()
 def is_cold() -> bool:
     """Whether nothing has been compiled yet by these sources on this machine."""
     return CACHE_FOLDER is None or next(CACHE_FOLDER.rglob("*.nbi"), None) is None
+
+
+if is_cold():
+    logging.getLogger("binaryast").warning("binaryast: compiling, once on this machine; this takes some ten seconds")
 
 
 def jit(signature: Any = None, *, allocates: bool = False, **options: Any) -> Callable[[Function], Function]:

@@ -5,12 +5,12 @@ beta, h = r s + eta G2 + zeta G3 is Kepler's equation (E. L. Stiefel, G. Scheife
 Mechanics, 1971).
 """
 
-from math import nan, sqrt
+from math import inf, nan, sqrt
 
 from binaryast.kernels.jit import Vector, jit
 from binaryast.kernels.so3 import dot
 
-MOST_ITERATIONS = 50
+MOST_ITERATIONS = 200
 NEAR = 1e-4  # the correction of s, relative, from which three terms of Taylor's series lead to the end
 SHORT = 0.3  # of beta s^2, for the series
 
@@ -38,32 +38,53 @@ def stumpff(beta: float, s: float) -> Four:
 
 @jit()
 def drift(x: Vector, v: Vector, gm: float, h: float) -> tuple[Vector, Vector]:
-    """Return x(h) - x and v(h) - v, without cancellation; not numbers where the iteration finds no end."""
+    """Return x(h) - x and v(h) - v, without cancellation; not numbers where x, v or h are none.
+
+    Backwards in time is forwards with the other velocity. Kepler's equation grows with s, so it has one solution, which
+    is kept between bounds; where the iteration would leave them, or is slow, it goes to their middle.
+    """
+    sign = -1.0 if h < 0.0 else 1.0
+    h = sign * h
     r = sqrt(dot(x, x))
-    eta = dot(x, v)
+    eta = sign * dot(x, v)
     beta = 2.0 * gm / r - dot(v, v)
     zeta = gm - beta * r
     u, k = h / r, 0.5 * eta / r
     s = u * (1.0 + u * (-k + u * (2.0 * k * k - zeta / (6.0 * r))))  # the reversed series of Kepler's equation
+    if beta > 0.0 and beta * beta * beta * h * h > gm * gm:  # by more than a radian of mean anomaly
+        s = h * beta / gm
+    if not s > 0.0:
+        s = u
+    low, high, last = 0.0, inf, inf
     for _ in range(MOST_ITERATIONS):
         g0, g1, g2, g3 = stumpff(beta, s)
         f = r * s + eta * g2 + zeta * g3 - h
+        if f <= 0.0:
+            low = s
+        else:  # also where it is beyond all numbers
+            high = s
         f1 = r + eta * g1 + zeta * g2  # the distance there
         f2 = eta * g0 + zeta * g1
         f3 = zeta * g0 - beta * eta * g1
-        d = -f / f1
-        d = -f / (f1 + 0.5 * d * f2)
-        d = -f / (f1 + d * (0.5 * f2 + d * f3 / 6.0))
-        s += d
-        if abs(d) <= NEAR * abs(s):
+        newton = -f / f1
+        d = -f / (f1 + 0.5 * newton * f2)
+        d = -f / (f1 + d * (0.5 * f2 + d * f3 / 6.0))  # of fourth order, near the end
+        if not abs(d - newton) <= 0.5 * abs(newton):
+            d = newton
+        if abs(d) <= NEAR * s:
             g3 += d * (g2 + 0.5 * d * (g1 + d / 3.0 * g0))
             g2 += d * (g1 + 0.5 * d * (g0 - beta * d / 3.0 * g1))
             g1 += d * (g0 - 0.5 * beta * d * (g1 + d / 3.0 * g0))
             distance = r + eta * g1 + zeta * g2
-            a, b = -gm * g2 / r, h - gm * g3  # f - 1 and g
-            c, e = -gm * g1 / (r * distance), -gm * g2 / distance  # f' and g' - 1
+            a, b = -gm * g2 / r, sign * (h - gm * g3)  # f - 1 and g
+            c, e = -sign * gm * g1 / (r * distance), -gm * g2 / distance  # f' and g' - 1
             return (
                 (a * x[0] + b * v[0], a * x[1] + b * v[1], a * x[2] + b * v[2]),
                 (c * x[0] + e * v[0], c * x[1] + e * v[1], c * x[2] + e * v[2]),
             )
+        s += d
+        if high < inf and not (low < s < high and abs(d) < 0.5 * last):
+            d = 0.5 * (high - low)
+            s = low + d
+        last = abs(d)
     return (nan, nan, nan), (nan, nan, nan)

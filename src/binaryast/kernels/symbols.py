@@ -10,6 +10,7 @@ does not see the instructions.
 from typing import Any, TypeAlias
 
 from llvmlite import ir
+from numba import types
 from numba.core import cgutils
 
 FLOAT = ir.DoubleType()
@@ -62,7 +63,7 @@ class Symbol:
 
 
 class SymbolLanes:
-    """What symbols offer besides arithmetic, see `binaryast.kernels.mutual.multipole.Lanes`."""
+    """What symbols offer besides arithmetic, see `binaryast.kernels.lanes.Lanes`."""
 
     def __init__(self, builder: Any) -> None:
         self.builder = builder
@@ -103,8 +104,51 @@ class SymbolLanes:
 
     def where_larger(self, a: Any, b: Any, one: Any, two: Any) -> Any:
         """Return ``one`` where a > b, ``two`` elsewhere."""
-        a, b, one, two = (as_value(self.builder, number, PAIR) for number in (a, b, one, two))
+        kind = PAIR if PAIR in map(_kind, (a, b, one, two)) else FLOAT
+        a, b, one, two = (as_value(self.builder, number, kind) for number in (a, b, one, two))
         return Symbol(self.builder, self.builder.select(self.builder.fcmp_ordered(">", a, b), one, two))
+
+
+def written_out(formula: Any, context: Any, builder: Any, signature: Any, values: Any) -> Any:
+    """Write out a formula of vectors: the code of an `intrinsic` whose arguments and result are tuples of floats.
+
+    ``formula`` takes the lanes and the vectors, and returns numbers, or tuples of them.
+    """
+    arguments = [_unpacked(builder, kind, value) for kind, value in zip(signature.args, values, strict=True)]
+    result = _flat(formula(SymbolLanes(builder), *arguments))
+    return context.make_tuple(builder, signature.return_type, [as_value(builder, number, FLOAT) for number in result])
+
+
+def written_out_twice(formula: Any, context: Any, builder: Any, signature: Any, values: Any) -> Any:
+    """Write out a formula for two side by side: every vector is there twice, the result is two tuples.
+
+    Arguments that are no tuples are there once, and the same for both.
+    """
+    lanes, arguments = SymbolLanes(builder), []
+    given = iter([_unpacked(builder, kind, value) for kind, value in zip(signature.args, values, strict=True)])
+    for one in given:
+        if isinstance(one, list):
+            arguments.append([lanes.pair(*both) for both in zip(one, next(given), strict=True)])
+        else:
+            arguments.append(one)
+    result = _flat(formula(lanes, *arguments))
+    tuples = [
+        context.make_tuple(builder, kind, [as_value(builder, lane(number), FLOAT) for number in result])
+        for lane, kind in zip((lanes.first, lanes.second), signature.return_type, strict=True)
+    ]
+    return context.make_tuple(builder, signature.return_type, tuples)
+
+
+def _unpacked(builder: Any, kind: Any, value: Any) -> Any:
+    """Return the symbols of a tuple, or of one number."""
+    if not isinstance(kind, types.BaseTuple):
+        return Symbol(builder, value)
+    return [Symbol(builder, part) for part in cgutils.unpack_tuple(builder, value)]
+
+
+def _flat(result: Any) -> list[Number]:
+    """Return the numbers of nested tuples."""
+    return [number for part in result for number in _flat(part)] if isinstance(result, (tuple, list)) else [result]
 
 
 def as_value(builder: Any, number: Number, kind: Any) -> Any:

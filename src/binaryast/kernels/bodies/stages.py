@@ -84,17 +84,12 @@ def drift(turn: Callable[..., Any], state: Array, constants: Array, h: float) ->
         if constants[body + IS_POINT]:
             continue
         p_at, q_at = momentum_of(n) + 3 * i, attitude_of(n) + 4 * i
-        q, rq, p, rp, solved = turn(
-            quaternion_at(state, q_at),
-            quaternion_at(state, remainder + q_at),
-            vector_at(state, p_at),
-            vector_at(state, remainder + p_at),
-            vector_at(constants, body + INVERSE),
-            vector_at(constants, body + RATIOS),
-            h,
-        )
+        q, rq = quaternion_at(state, q_at), quaternion_at(state, remainder + q_at)
+        p, rp = vector_at(state, p_at), vector_at(state, remainder + p_at)
+        a, solved = turn((q, rq, p, rp), (vector_at(constants, body + INVERSE), vector_at(constants, body + RATIOS)), h)
         if not solved:
             return NO_ROTATION + i
+        q, rq, p, rp = a
         put_quaternion(state, q_at, q)
         put_quaternion(state, remainder + q_at, rq)
         put_vector(state, p_at, p)

@@ -14,35 +14,13 @@ configurations, and on symbols it writes out the compiled kernels (``multipole_k
 """
 
 from math import factorial
-from typing import Any, NamedTuple, Protocol, TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from binaryast.kernels.harmonics import exchange
+from binaryast.kernels.lanes import Lanes, Number
 
-Number: TypeAlias = Any  # a float, a symbol or an array; or a pair of them, the secondary's first
 Numbers: TypeAlias = list[Number]
 POLE = 1e-40  # the square of an angle at which the azimuth of a direction does not matter
-
-
-class Lanes(Protocol):
-    """What a kind of numbers must offer, besides arithmetic."""
-
-    def sqrt(self, a: Number) -> Number:
-        """Return the square root."""
-
-    def pair(self, one: Number, two: Number) -> Number:
-        """Return two numbers side by side."""
-
-    def first(self, pair: Number) -> Number:
-        """Return the first of a pair."""
-
-    def second(self, pair: Number) -> Number:
-        """Return the second of a pair."""
-
-    def swapped(self, pair: Number) -> Number:
-        """Return a pair the other way round."""
-
-    def where_larger(self, a: Number, b: Number, one: Number, two: Number) -> Number:
-        """Return ``one`` where a > b, ``two`` elsewhere."""
 
 
 class Moments(NamedTuple):

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from binaryast.kernels.harmonics import harmonic_moments, place
+from binaryast.kernels.lanes import Number
 from binaryast.kernels.moments import Floats
-from binaryast.kernels.mutual.multipole import Aligned, Moments, Number, Numbers, aligned, coupled
+from binaryast.kernels.mutual.multipole import Aligned, Moments, Numbers, aligned, coupled
 
 C_1, C_2, S_1, S_2 = range(4)
 

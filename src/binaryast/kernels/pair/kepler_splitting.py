@@ -4,7 +4,7 @@ from math import sqrt
 
 from binaryast.kernels import kepler
 from binaryast.kernels.compensated import add_vector
-from binaryast.kernels.free_rotation import turn_exactly
+from binaryast.kernels.free_rotation import turn_both_exactly
 from binaryast.kernels.jit import PAIR_POINTER, Array, PairPotential, Vector, jit, step_signature
 from binaryast.kernels.pair.layout import GM, REDUCED_MASS
 from binaryast.kernels.pair.stages import Motion, take_stages
@@ -31,4 +31,6 @@ def beyond_points(gradient: Vector, x: Vector, constants: Array) -> Vector:
 @jit(step_signature(PAIR_POINTER))
 def step(state: Array, constants: Array, scheme: Array, potential: PairPotential, parameters: Array, h: float) -> int:
     """Advance a pair by h."""
-    return take_stages(move_on_orbit, beyond_points, turn_exactly, state, constants, scheme, potential, parameters, h)
+    return take_stages(
+        move_on_orbit, beyond_points, turn_both_exactly, state, constants, scheme, potential, parameters, h
+    )

@@ -7,7 +7,7 @@ instead of (125) and (126) the barycentre moves uniformly. Higher orders are com
 lengths.
 """
 
-from binaryast.kernels.free_rotation import turn_variationally
+from binaryast.kernels.free_rotation import turn_both_variationally
 from binaryast.kernels.jit import PAIR_POINTER, Array, PairPotential, jit, step_signature
 from binaryast.kernels.pair.stages import move_freely, take_stages, whole
 
@@ -15,4 +15,4 @@ from binaryast.kernels.pair.stages import move_freely, take_stages, whole
 @jit(step_signature(PAIR_POINTER))
 def step(state: Array, constants: Array, scheme: Array, potential: PairPotential, parameters: Array, h: float) -> int:
     """Advance a pair by h."""
-    return take_stages(move_freely, whole, turn_variationally, state, constants, scheme, potential, parameters, h)
+    return take_stages(move_freely, whole, turn_both_variationally, state, constants, scheme, potential, parameters, h)

@@ -7,13 +7,13 @@ own body's frame and attitudes as unit quaternions. Values travel as tuples, whi
 """
 
 from collections.abc import Callable
-from typing import Any
 
 from numba import types
 
 from binaryast.kernels.arrays import matrix_at, put_quaternion, put_vector, quaternion_at, vector_at
 from binaryast.kernels.attraction import attract
 from binaryast.kernels.compensated import add_vector
+from binaryast.kernels.free_rotation import Attitude
 from binaryast.kernels.jit import ARRAY, PAIR_POINTER, Array, PairPotential, Vector, jit
 from binaryast.kernels.pair.layout import (
     ATTITUDE_1,
@@ -56,6 +56,32 @@ def put_exerted(state: Array, u: float, gradient: Vector, torque_2: Vector, torq
 
 
 @jit()
+def attitude_at(state: Array, attitude: int, momentum: int) -> Attitude:
+    """Return a body's attitude and angular momentum with their remainders."""
+    q, rq = quaternion_at(state, attitude), quaternion_at(state, REMAINDER + attitude)
+    p, rp = vector_at(state, momentum), vector_at(state, REMAINDER + momentum)
+    return q, rq, p, rp
+
+
+@jit()
+def put_attitude(state: Array, attitude: int, momentum: int, a: Attitude) -> None:
+    """Put a body's attitude and angular momentum with their remainders into the state."""
+    q, rq, p, rp = a
+    put_quaternion(state, attitude, q)
+    put_quaternion(state, REMAINDER + attitude, rq)
+    put_vector(state, momentum, p)
+    put_vector(state, REMAINDER + momentum, rp)
+
+
+@jit()
+def spun_up(a: Attitude, h: float, torque: Vector) -> Attitude:
+    """Return an attitude and angular momentum after a torque has worked for h."""
+    q, rq, p, rp = a
+    p, rp = add_vector(p, rp, h, torque)
+    return q, rq, p, rp
+
+
+@jit()
 def move_freely(x: Vector, rx: Vector, v: Vector, rv: Vector, constants: Array, h: float) -> Motion:
     """Move uniformly."""
     x, rx = add_vector(x, rx, h, v)
@@ -72,7 +98,7 @@ def whole(gradient: Vector, x: Vector, constants: Array) -> Vector:
 def take_stages(
     move: Callable[..., Motion],
     kicking: Callable[..., Vector],
-    turn: Callable[..., Any],
+    turn_both: Callable[..., tuple[Attitude, Attitude, bool, bool]],
     state: Array,
     constants: Array,
     scheme: Array,
@@ -82,14 +108,14 @@ def take_stages(
 ) -> int:
     """Advance a pair by h; the state is left as it was where a stage has no solution, and the status says so.
 
-    ``move`` is the drift of the positions, ``turn`` that of each body, ``kicking`` the part of dU/dx that kicks.
+    ``move`` is the drift of the position, ``turn_both`` that of the bodies, ``kicking`` the part of dU/dx that kicks.
     """
     x, rx = vector_at(state, POSITION), vector_at(state, REMAINDER + POSITION)
     v, rv = vector_at(state, VELOCITY), vector_at(state, REMAINDER + VELOCITY)
-    q2, rq2 = quaternion_at(state, ATTITUDE_2), quaternion_at(state, REMAINDER + ATTITUDE_2)
-    p2, rp2 = vector_at(state, MOMENTUM_2), vector_at(state, REMAINDER + MOMENTUM_2)
-    q1, rq1 = quaternion_at(state, ATTITUDE_1), quaternion_at(state, REMAINDER + ATTITUDE_1)
-    p1, rp1 = vector_at(state, MOMENTUM_1), vector_at(state, REMAINDER + MOMENTUM_1)
+    a2 = attitude_at(state, ATTITUDE_2, MOMENTUM_2)
+    a1 = attitude_at(state, ATTITUDE_1, MOMENTUM_1)
+    body_2 = vector_at(constants, INVERSE_2), vector_at(constants, RATIOS_2)
+    body_1 = vector_at(constants, INVERSE_1), vector_at(constants, RATIOS_1)
     u, gradient = state[POTENTIAL], vector_at(state, GRADIENT)
     torque_2, torque_1 = vector_at(state, TORQUE_2), vector_at(state, TORQUE_1)
     to_velocity = -h / constants[REDUCED_MASS]
@@ -97,44 +123,33 @@ def take_stages(
     kick = scheme[0]
     for stage in range(scheme.size // 2):
         v, rv = add_vector(v, rv, kick * to_velocity, kicking(gradient, x, constants))
-        p2, rp2 = add_vector(p2, rp2, kick * h, torque_2)
-        p1, rp1 = add_vector(p1, rp1, kick * h, torque_1)
+        a2, a1 = spun_up(a2, kick * h, torque_2), spun_up(a1, kick * h, torque_1)
         drift = scheme[2 * stage + 1] * h
         kick = scheme[2 * stage + 2]
 
         x, rx, v, rv = move(x, rx, v, rv, constants, drift)
-        inverse, ratios = vector_at(constants, INVERSE_2), vector_at(constants, RATIOS_2)
-        q2, rq2, p2, rp2, solved = turn(q2, rq2, p2, rp2, inverse, ratios, drift)
-        if not solved:
+        a2, a1, solved_2, solved_1 = turn_both(a2, body_2, a1, body_1, drift)
+        if not solved_2:
             return NO_ROTATION
-        inverse, ratios = vector_at(constants, INVERSE_1), vector_at(constants, RATIOS_1)
-        q1, rq1, p1, rp1, solved = turn(q1, rq1, p1, rp1, inverse, ratios, drift)
-        if not solved:
+        if not solved_1:
             return NO_ROTATION + 1
 
-        r2, r1 = quaternion_to_matrix(q2), quaternion_to_matrix(q1)
+        r2, r1 = quaternion_to_matrix(a2[0]), quaternion_to_matrix(a1[0])
         u, gradient, torque_2, torque_1 = attract(x, r2, r1, potential, parameters)
-        if not is_finite(u, x, v, p1, p2):
+        if not is_finite(u, x, v, a2[2], a1[2]):
             return NOT_FINITE
     v, rv = add_vector(v, rv, kick * to_velocity, kicking(gradient, x, constants))
-    p2, rp2 = add_vector(p2, rp2, kick * h, torque_2)
-    p1, rp1 = add_vector(p1, rp1, kick * h, torque_1)
-    if not is_finite(u, x, v, p1, p2):
+    a2, a1 = spun_up(a2, kick * h, torque_2), spun_up(a1, kick * h, torque_1)
+    if not is_finite(u, x, v, a2[2], a1[2]):
         return NOT_FINITE
 
     put_vector(state, POSITION, x)
-    put_vector(state, VELOCITY, v)
-    put_quaternion(state, ATTITUDE_2, q2)
-    put_vector(state, MOMENTUM_2, p2)
-    put_quaternion(state, ATTITUDE_1, q1)
-    put_vector(state, MOMENTUM_1, p1)
-    put_exerted(state, u, gradient, torque_2, torque_1)
     put_vector(state, REMAINDER + POSITION, rx)
+    put_vector(state, VELOCITY, v)
     put_vector(state, REMAINDER + VELOCITY, rv)
-    put_quaternion(state, REMAINDER + ATTITUDE_2, rq2)
-    put_vector(state, REMAINDER + MOMENTUM_2, rp2)
-    put_quaternion(state, REMAINDER + ATTITUDE_1, rq1)
-    put_vector(state, REMAINDER + MOMENTUM_1, rp1)
+    put_attitude(state, ATTITUDE_2, MOMENTUM_2, a2)
+    put_attitude(state, ATTITUDE_1, MOMENTUM_1, a1)
+    put_exerted(state, u, gradient, torque_2, torque_1)
     return COMPLETED
 
 
