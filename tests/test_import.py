@@ -15,7 +15,7 @@ import binaryast as ba
 def test_import_loads_nothing_heavy() -> None:
     code = (
         "import sys, binaryast; binaryast.__version__; dir(binaryast);"
-        "print([name for name in ('numba', 'scipy', 'h5py', 'matplotlib', 'astropy', 'tqdm', 'trimesh')"
+        "print([name for name in ('numba', 'scipy', 'h5py', 'heyoka', 'matplotlib', 'astropy', 'tqdm', 'trimesh')"
         " if name in sys.modules])"
     )
     result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
@@ -40,6 +40,7 @@ def test_every_public_name_is_documented_with_an_example() -> None:
         "RelativeState",
         "LGVI",
         "RungeKutta",
+        "Taylor",
         "Point",
         "Orbit",
         "propagate",
@@ -79,7 +80,13 @@ def test_values_pickle() -> None:
     ):
         again = pickle.loads(pickle.dumps(value))
         assert type(again) is type(value)
-    for value in (ba.RungeKutta(rtol=1e-9), ba.Point(), ba.Orbit(1 * u.km), *ba.catalogue.load("sn263")):
+    for value in (
+        ba.RungeKutta(rtol=1e-9),
+        ba.Taylor(1e-12, compact=False),
+        ba.Point(),
+        ba.Orbit(1 * u.km),
+        *ba.catalogue.load("sn263"),
+    ):
         assert type(pickle.loads(pickle.dumps(value))) is type(value)
     run = ba.propagate(system, state, duration=0.1 * u.s, integrator=ba.LGVI(0.01 * u.s))
     again = pickle.loads(pickle.dumps(run))

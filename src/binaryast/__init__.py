@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         SecondDegree,
         pair_potential,
     )
-    from binaryast.integrators import LGVI, KeplerSplitting, RungeKutta, Splitting
+    from binaryast.integrators import LGVI, KeplerSplitting, RungeKutta, Splitting, Taylor
     from binaryast.layered import Layered
     from binaryast.orbits import Orbit
     from binaryast.polyhedron import Polyhedron
@@ -75,6 +75,7 @@ _HOMES = {
     "StokesCoefficients": "coefficients",
     "Surface": "surfaces",
     "System": "system",
+    "Taylor": "integrators",
     "Trajectory": "trajectory",
     "Union": "unions",
     "mascons": "filling",
@@ -119,6 +120,7 @@ __all__ = [
     "StokesCoefficients",
     "Surface",
     "System",
+    "Taylor",
     "Trajectory",
     "Union",
     "__version__",

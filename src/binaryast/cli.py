@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 FAILED, WRONG_INPUT, INTERRUPTED = 1, 2, 130
 RUN = ".h5"  # the suffix of a run
-INTEGRATORS = ("LGVI", "Splitting", "KeplerSplitting", "RungeKutta")
+INTEGRATORS = ("LGVI", "Splitting", "KeplerSplitting", "RungeKutta", "Taylor")
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

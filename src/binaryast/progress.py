@@ -1,12 +1,15 @@
-"""What a long run shows and listens to while it is under way: a bar, and Ctrl-C."""
+"""What a long run shows and listens to while it is under way: why it has not begun yet, a bar, and Ctrl-C."""
 
 import signal
+import sys
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
 import astropy.units as u
+
+MOMENT = 0.5  # s
 
 
 @contextmanager
@@ -43,3 +46,17 @@ def bar(end: float, progress: bool) -> Iterator[Any]:
             shown.update(elapsed / size - shown.n)
 
         yield show
+
+
+@contextmanager
+def said_if_long(text: str, progress: bool) -> Iterator[None]:
+    """Say on standard error what keeps a run from beginning, where that takes more than a moment."""
+    if not progress:
+        yield
+        return
+    timer = threading.Timer(MOMENT, print, [f"binaryast: {text}"], {"file": sys.stderr, "flush": True})
+    timer.start()
+    try:
+        yield
+    finally:
+        timer.cancel()

@@ -1,4 +1,4 @@
-"""The driver of a run: it checks, has the run followed by compiled steps or by SciPy, and reports."""
+"""The driver of a run: it checks, has the run followed by compiled steps, by SciPy or by heyoka, and reports."""
 
 import platform
 import warnings
@@ -14,11 +14,11 @@ from astropy.units import Quantity
 from binaryast import choosing, constants
 from binaryast.errors import AccuracyError, EndWarning, GravityWarning, InputError, StepWarning
 from binaryast.gravity import LARGEST_DEGREE
-from binaryast.integrators import Integrator, RungeKutta, Splitting, Stepping
+from binaryast.integrators import Integrator, RungeKutta, Splitting, Stepping, Taylor
 from binaryast.kernels import loop
 from binaryast.kernels.jit import source_hash
 from binaryast.outcome import Outcome
-from binaryast.progress import bar
+from binaryast.progress import bar, said_if_long
 from binaryast.schedule import schedule
 from binaryast.state import State
 from binaryast.stepping import SteppedRun, turn_error
@@ -28,6 +28,7 @@ from binaryast.units import Floats, brief, numbers, quantity, span, to_si
 
 if TYPE_CHECKING:
     from binaryast.solving import SolvedRun
+    from binaryast.taylor.run import TaylorRun
 
 DOUBTFUL_ENERGY_ERROR = 0.01
 DOUBTFUL_TURN = 2 * pi / 20  # rad in one step
@@ -123,7 +124,9 @@ def propagate(
     _check_kinds(system, state, integrator)
     end = float(to_si(duration, "s", "duration", sign="positive"))
     interval = None if save_every is None else float(to_si(save_every, "s", "save_every", sign="positive"))
-    run = _run(system, state, integrator, end, interval)
+    compiling = "heyoka compiles the equations, once for all systems of one kind; it may take some seconds"
+    with said_if_long(compiling, progress and isinstance(integrator, Taylor)):
+        run = _run(system, state, integrator, end, interval)
     with bar(end, progress) as show:
         run.go(show)
     return _trajectory(system, state, integrator, run.outcome())
@@ -167,7 +170,7 @@ def _to_accuracy(
 
 def _run(
     system: System, state: State, integrator: Integrator, end: float, interval: float | None
-) -> "SteppedRun | SolvedRun":
+) -> "SteppedRun | SolvedRun | TaylorRun":
     """Return the run of an integrator, looked at and ready to go."""
     if isinstance(integrator, Stepping):
         segments = schedule(end, integrator.step.value, interval)
@@ -175,6 +178,10 @@ def _run(
         _check_turns(system, state, integrator, longest)
         _check_orbits(system, state, integrator, longest)
         return SteppedRun(system, state, integrator, segments)
+    if isinstance(integrator, Taylor):
+        from binaryast.taylor.run import TaylorRun
+
+        return TaylorRun(system, state, integrator, end, interval)
     if not isinstance(integrator, RungeKutta):
         raise InputError(f"integrator: expected one of binaryast's, such as ba.LGVI, got {brief(integrator)}")
     from binaryast.solving import SolvedRun  # a third of a second, needed only here
@@ -266,7 +273,7 @@ def _trajectory(system: System, state: State, integrator: Integrator, outcome: O
         steps=outcome.steps,
         step=quantity(outcome.step, "s"),
         wall_time=quantity(outcome.wall_time, "s"),
-        provenance=provenance(),
+        provenance=provenance() | ({"heyoka": version("heyoka")} if isinstance(integrator, Taylor) else {}),
         **figures,
         **asked,
     )

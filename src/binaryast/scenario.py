@@ -332,6 +332,8 @@ def _integrator(run: dict[str, Any]) -> Integrator:
     arguments = {key: value for key, value in table.items() if key != "type"}
     if "step" not in run and issubclass(kind, Stepping):
         raise InputError("run.step is missing")
+    if "step" in run and "step" not in inspect.signature(kind).parameters:
+        raise InputError(f"run.step: {kind.__name__} chooses its steps itself: leave it out")
     step = {"step": _time(run["step"], "run.step")} if "step" in run else {}
     return _call(kind, step, arguments, "run.integrator")  # type: ignore[no-any-return]
 

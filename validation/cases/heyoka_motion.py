@@ -196,7 +196,7 @@ def run(name: str, arc: Callable[[], Arc], effort: Effort) -> Findings:
     if arc.fast_primary:
         checks.append(attitude_law(arc, exact))
     if effort >= Effort.WHOLE:
-        checks.append(runge_kutta(arc, exact))
+        checks += [runge_kutta(arc, exact), taylor_series(arc, exact)]
     for needed, longer in arc.longer.items():
         if effort >= needed:
             checks += of_longer(arc, longer)
@@ -210,6 +210,14 @@ def runge_kutta(arc: Arc, exact: Snapshot) -> Check:
     error = difference(snapshot_of(end), exact).largest
     why = "the solver's smallest tolerance, 2.3e-14 a step"
     return Check("RungeKutta at its tightest, all quantities", error, arc.tolerances.runge_kutta, why, roundoff=True)
+
+
+def taylor_series(arc: Arc, exact: Snapshot) -> Check:
+    """Return the check of the package's own use of heyoka, whose equations share nothing with the oracles'."""
+    end = ba.propagate(arc.system, arc.state, duration=arc.end * u.s, integrator=ba.Taylor())[-1]
+    error = difference(snapshot_of(end), exact).largest
+    why = "rounding, times the growth of a perturbation"
+    return Check("Taylor at 1e-16, all quantities", error, arc.tolerances.rounding, why, roundoff=True)
 
 
 def of_longer(arc: Arc, longer: Longer) -> list[Check]:

@@ -40,6 +40,10 @@ class WorkingBodies(Working):
         )
         self.state[: layout.MOTION * n] = np.concatenate([part.ravel() for part in motion])
         check_gravity(system, state)
+        self.exert()
+
+    def exert(self) -> None:
+        """Fill in what the motion in the state exerts."""
         exert(self.state, self.constants, self.attraction, self.parameters)
 
     def from_rows(self, rows: Floats, time: Floats) -> Motion:

@@ -1,0 +1,159 @@
+"""A run by heyoka's Taylor series, watched at every step and at every row."""
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+
+from binaryast.errors import InputError
+from binaryast.integrators import Taylor
+from binaryast.kernels.bodies import layout
+from binaryast.outcome import Outcome, Watch, contact_message, interruption_message, not_finite_message, overlap
+from binaryast.progress import keyboard
+from binaryast.schedule import row_times
+from binaryast.state import State
+from binaryast.system import System
+from binaryast.taylor import compiled
+from binaryast.taylor.motion import Formulas
+from binaryast.units import Floats
+from binaryast.working.base import coinciding
+from binaryast.working.bodies import WorkingBodies
+
+PIECES = 32  # of a step whose chord touches: its arc may not
+SMALLEST_STEP = 1e-15  # over the time since the start: smaller ones lead nowhere
+
+
+class TaylorRun:
+    """One run under way."""
+
+    def __init__(self, system: System, state: State, integrator: Taylor, end: float, interval: float | None) -> None:
+        self.system, self.end = system, end
+        compiled.heyoka()  # says at once where it is missing
+        self.times = row_times(end, interval)
+        self.working = WorkingBodies(system, state)
+        self.watch = Watch()
+        self.ended, self.message = "completed", ""
+        self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
+        self.rows = [self._row()]
+        self._begin(state)
+        self.formulas = Formulas(system, state, self.working)
+        self.integrator = compiled.integrator(self.formulas, integrator.tolerance, compact=integrator.compact)
+        self.y = self.formulas.start
+
+    def _row(self) -> Floats:
+        return self.working.state[: self.working.row_size].copy()
+
+    def _begin(self, state: State) -> None:
+        """Look at the start: overlap; and keep the references."""
+        w = self.working
+        if touching := coinciding(self.system, state.si.position) or w.touching(w.state, w.surfaces, w.state):
+            raise overlap(self.system, touching - 1, state.si.position)
+        self.watch.begin(w.measure(w.state, w.constants), float(w.state[w.potential_at]))
+
+    def go(self, show: Callable[[float], None]) -> None:
+        """Follow the motion as far as it goes."""
+        with keyboard() as pressed:
+            while self.elapsed < self.end and self.ended == "completed":
+                began = time.perf_counter()
+                self._step()
+                self.wall_time += time.perf_counter() - began
+                show(self.elapsed)
+                if pressed and self.ended == "completed" and self.elapsed < self.end:
+                    self.ended, self.message = "interrupted", interruption_message(self.elapsed)
+        if self.times[len(self.rows) - 1] != self.elapsed:  # what ended the run is not one of its rows
+            self.times = np.append(self.times[: len(self.rows)], self.elapsed)
+            self._put(self.y)
+            self.working.exert()
+            self.rows.append(self._row())
+
+    def _step(self) -> None:
+        """Take one step, look at what lies in it, and save the rows that it passes."""
+        saved = len(self.rows)
+        try:
+            reached = self._advance()
+            end, y, touched = self._way(reached)
+            self._look(end, y)
+            while len(self.rows) < len(self.times) and self.times[len(self.rows)] < end:
+                due = float(self.times[len(self.rows)])
+                self._look(due, self._at(due))
+                self.rows.append(self._row())
+        except InputError as error:
+            del self.rows[saved:]
+            self.ended, self.message = "failed", f"{error}; the last good row is at {self.elapsed:g} s"
+            return
+        self.y, self.elapsed = y, end
+        self.steps += 1
+        if len(self.rows) < len(self.times) and self.times[len(self.rows)] == end:
+            self._look(end, y)
+            self.rows.append(self._row())
+        if touched:
+            self.ended, self.message = "contact", contact_message(self.system, touched - 1, end)
+
+    def _advance(self) -> float:
+        """Have heyoka take a step, up to the end of the run; return the time that it reaches."""
+        unit = self.formulas.time
+        self.formulas.normalise(self.integrator.state)
+        left = self.end / unit - self.integrator.time
+        _, step = self.integrator.step(left, write_tc=True)
+        if not np.all(np.isfinite(self.integrator.state)):
+            raise InputError(not_finite_message("positions, spins or gravity are not numbers any more", self.system))
+        if step < SMALLEST_STEP * self.integrator.time:
+            raise InputError("the steps have become too small to lead anywhere: bodies are too near one another")
+        reached = float(self.integrator.time) * unit
+        return self.end if step >= left or reached > self.end else reached
+
+    def _at(self, when: float) -> Floats:
+        """Return the variables at a time within the last step, by its own series."""
+        return np.array(self.integrator.update_d_output(when / self.formulas.time))
+
+    def _put(self, y: Floats) -> None:
+        self.working.state[: layout.MOTION * self.working.count] = self.formulas.motion(y)
+
+    def _look(self, when: float, y: Floats) -> None:
+        """Put variables into the working state, and take in what is measured there."""
+        w = self.working
+        self._put(y)
+        w.exert()
+        measures = w.measure(w.state, w.constants)
+        if not np.all(np.isfinite([*measures, w.state[w.potential_at]])):
+            raise InputError(not_finite_message("the energy or another figure is not a number any more", self.system))
+        if self.watch.look(measures):
+            self.closest_time = when
+
+    def _way(self, reached: float) -> tuple[float, Floats, int]:
+        """Return where a step ends: at its end, or where two bodies touch on the way, and which pair then does.
+
+        The chord of an arc passes nearer than the arc: only where the chord touches, the arc is followed in pieces.
+        """
+        before, after = self.y, self.integrator.state.copy()
+        if not self._touching(before, after):
+            return reached, after, 0
+        for when in np.linspace(self.elapsed, reached, PIECES + 1)[1:]:
+            y = self._at(float(when)) if when < reached else after
+            if touched := self._touching(before, y):
+                return float(when), y, touched
+            before = y
+        return reached, after, 0
+
+    def _touching(self, before: Floats, after: Floats) -> int:
+        """Return which pair touches on the straight way, counted from 1, or 0."""
+        w = self.working
+        w.before[: layout.MOTION * w.count] = self.formulas.motion(before)
+        self._put(after)
+        touching: int = w.touching(w.state, w.surfaces, w.before)
+        return touching
+
+    def outcome(self) -> Outcome:
+        """Return what has been computed."""
+        times = self.times[: len(self.rows)].copy()
+        return Outcome(
+            time=times,
+            motion=self.working.from_rows(np.array(self.rows), times),
+            watch=self.watch,
+            closest_time=self.closest_time,
+            status=self.ended,
+            message=self.message,
+            steps=self.steps,
+            step=self.elapsed / max(self.steps, 1),
+            wall_time=self.wall_time,
+        )
