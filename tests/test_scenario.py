@@ -10,7 +10,7 @@ import binaryast as ba
 from binaryast.errors import InputError, ScenarioError, StorageError
 from binaryast.scenario import load, loads
 
-PLAIN = ba.catalogue.text("didymos")
+PLAIN = ba.catalogue.text("didymos").replace("accuracy = 1e-8\n", "")  # it has a step alone
 
 
 @pytest.mark.parametrize("name", ba.catalogue.names())
@@ -48,6 +48,7 @@ def test_a_printed_entry_is_a_scenario(tmp_path: Path) -> None:
     assert scenario.name == "mine"
     assert scenario.duration == 60 * u.day
     assert scenario.integrator.step == 40 * u.s
+    assert scenario.accuracy is None
 
 
 def test_the_other_ways_to_start() -> None:
@@ -89,7 +90,13 @@ def changed(old: str, new: str) -> str:
         (changed("[state]", "[sate]"), "sate: unknown key: did you mean 'state'"),
         (changed('period = "', 'perod = "'), "state.perod: unknown key: did you mean 'period'"),
         (changed('step = "', 'stp = "'), "run.stp: unknown key: did you mean 'step'"),
-        (changed('step = "40 s"', ""), "run.step is missing"),
+        (changed('step = "40 s"', ""), "run.step is missing: expected a step, or an accuracy such as"),
+        (changed('step = "40 s"', 'accuracy = "1e-8"'), "run.accuracy: expected a number such as 1e-8"),
+        (changed('step = "40 s"', 'step = "40 s"\nintegrator = { type = "Spliting" }'), "did you mean 'Splitting'?"),
+        (
+            changed('step = "40 s"', 'step = "40 s"\nintegrator = { type = "LGVI", order = 5 }'),
+            "run.integrator: LGVI: order=5",
+        ),
         (changed('step = "40 s"', "step = 40"), 'run.step: expected a text with a unit such as "40 s"'),
         (changed('step = "40 s"', 'step = "40"'), "'40' has no unit"),
         (changed('step = "40 s"', 'step = "40 kg"'), "is not a time"),
@@ -260,3 +267,13 @@ def test_a_mesh_that_is_not_there(tmp_path: Path) -> None:
     path.write_text(with_shape('{ type = "Polyhedron", file = "none.obj", unit = "km" }'))
     with pytest.raises(StorageError, match=r"none\.obj: no such file"):
         load(path)
+
+
+def test_integrators_and_accuracies() -> None:
+    text = PLAIN.replace('step = "40 s"', 'step = "40 s"\nintegrator = { type = "KeplerSplitting", scheme = "aba104" }')
+    found = loads(text, name="x", where="x")
+    assert repr(found.integrator) == repr(ba.KeplerSplitting(40 * u.s, "aba104"))
+    assert found.accuracy is None
+    found = loads(PLAIN.replace('step = "40 s"', "accuracy = 1e-8"), name="x", where="x")
+    assert found.integrator is None
+    assert found.accuracy == 1e-8

@@ -315,6 +315,7 @@ def _start(options: argparse.Namespace) -> tuple["System", "State", dict[str, An
     duration, step, save_every = (
         _time(getattr(options, name), f"--{name.replace('_', '-')}") for name in ("duration", "step", "save_every")
     )
+    integrator: Integrator | None
     if Path(options.system).suffix.lower() == RUN:
         from binaryast.trajectory import Trajectory
 
@@ -334,7 +335,9 @@ def _start(options: argparse.Namespace) -> tuple["System", "State", dict[str, An
     return pair, start, _method(integrator, accuracy, step, options), duration, save_every
 
 
-def _method(before: "Integrator", accuracy: float | None, step: Any, options: argparse.Namespace) -> dict[str, Any]:
+def _method(
+    before: "Integrator | None", accuracy: float | None, step: Any, options: argparse.Namespace
+) -> dict[str, Any]:
     """Return the integrator, or the accuracy where one is known and no integrator is asked for."""
     asked = [name for name in ("integrator", "order", "scheme", "frame") if getattr(options, name) is not None]
     asked += ["step"] * (step is not None)
@@ -359,18 +362,18 @@ def _gravity_of_degree(degree: int) -> "Gravity":
         ) from None
 
 
-def _integrator(before: "Integrator", step: Any, options: argparse.Namespace) -> "Integrator":
+def _integrator(before: "Integrator | None", step: Any, options: argparse.Namespace) -> "Integrator":
     """Return the integrator that the options ask for, the scenario's or the earlier run's where they do not."""
     from binaryast.integrators import KINDS, LGVI, Stepping
 
     asked = {
         name: getattr(options, name) for name in ("order", "scheme", "frame") if getattr(options, name) is not None
     }
-    if step is None and options.integrator is None and not asked:
+    if before is not None and step is None and options.integrator is None and not asked:
         return before
-    default = type(before) if step is None and set(asked) <= {"frame"} else LGVI  # --step alone: LGVI of order 2
-    kind = KINDS[options.integrator] if options.integrator else default
-    arguments = before.arguments() if kind is type(before) and not issubclass(kind, Stepping) else {}
+    keep = before is not None and step is None and set(asked) <= {"frame"}  # --step alone: LGVI of order 2
+    kind = KINDS[options.integrator] if options.integrator else type(before) if keep and before is not None else LGVI
+    arguments = before.arguments() if isinstance(before, kind) and not issubclass(kind, Stepping) else {}
     if issubclass(kind, Stepping):
         frame = getattr(before, "frame", None) if kind is not KINDS["KeplerSplitting"] else None
         arguments = {} if frame is None else {"frame": frame}

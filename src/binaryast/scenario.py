@@ -149,8 +149,8 @@ class Scenario(Value):
         The file's stem, and one line.
     system, state : System, State
         The bodies, their gravity and where they start.
-    integrator : Integrator
-        How to run it, where no accuracy is asked for.
+    integrator : Integrator or None
+        How to run it, where no accuracy is asked for; there is one, or an accuracy, or both.
     accuracy : float or None
         The accuracy at which the command runs it.
     duration, save_every : Quantity
@@ -165,7 +165,7 @@ class Scenario(Value):
     title: str
     system: System
     state: State
-    integrator: Integrator
+    integrator: Integrator | None
     accuracy: float | None
     duration: Quantity
     save_every: Quantity | None
@@ -325,13 +325,15 @@ def _typed(table: dict[str, Any], kinds: dict[str, Any], where: str) -> Any:
     return _call(kind, {}, arguments, where)
 
 
-def _integrator(run: dict[str, Any]) -> Integrator:
-    """Return how to run it: the integrator's table, its step beside it."""
+def _integrator(run: dict[str, Any]) -> Integrator | None:
+    """Return how to run it: the integrator's table, its step beside it; None where there is an accuracy alone."""
+    if "accuracy" in run and "step" not in run and "integrator" not in run:
+        return None
     table = _table(run, "integrator", "run.") or {"type": "LGVI"}
     kind = KINDS[_choice(table, KINDS, "run.integrator")]
     arguments = {key: value for key, value in table.items() if key != "type"}
     if "step" not in run and issubclass(kind, Stepping):
-        raise InputError("run.step is missing")
+        raise InputError("run.step is missing: expected a step, or an accuracy such as accuracy = 1e-8")
     if "step" in run and "step" not in inspect.signature(kind).parameters:
         raise InputError(f"run.step: {kind.__name__} chooses its steps itself: leave it out")
     step = {"step": _time(run["step"], "run.step")} if "step" in run else {}
