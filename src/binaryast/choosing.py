@@ -46,7 +46,7 @@ class Plan(NamedTuple):
     power : float
         With which power of the step its error falls there.
     error : float
-        What the error at the end will be, where the trial was the whole run; else 0.
+        What the error at the end will be, as far as the trial can tell.
     reason : str
         Why it was picked.
     """
@@ -190,19 +190,19 @@ class Problem:
                 return time
         return 0.9 * float(outcome.time[-1])
 
-    def reference(self, time: float, wanted: float) -> tuple[Motion | None, int]:
-        """Return rows that are right to a fraction of what is wanted, or to round-off, and in how many steps."""
+    def reference(self, time: float, wanted: float) -> tuple[Motion | None, int, float]:
+        """Return rows that are right to a fraction of what is wanted, or to round-off, the steps, and how right."""
         count = _whole(12 * time / self.fastest)
         best, last = None, inf
         while count < MOST * time / self.fastest:
             finer = self.motion(REFERENCE, time, count)
             if finer is not None and best is not None:
                 apart = float(errors(best, finer).max())
-                if apart < wanted / 30 or (last < SMALL and apart > last / 2):
-                    return finer, count
+                if apart < wanted / 30 or (last < LARGE and apart > last / 2):
+                    return finer, count, apart
                 last = apart
             best, count = finer, _whole(1.5 * count)
-        return None, count
+        return best, count, last
 
     def estimate(self, plan: Plan, end: Motion, step: float, time: float, accuracy: float) -> Estimate | None:
         """Return the error at the end of a run, by another with steps twice as long; None where that one breaks off.
@@ -270,12 +270,17 @@ def plan(problem: Problem, end: float, accuracy: float, longest: float) -> Plan:
     if time < some:  # a contact is the end
         end = time
     wanted = accuracy / SAFETY * time / end
-    reference, count = problem.reference(time, wanted)
-    if reference is not None and (sensitivity := problem.sensitivity(REFERENCE, time, count, reference)) is not None:
-        sensitivity.refuse(accuracy, end)
+    reference, count, apart = problem.reference(time, wanted)
     if reference is None:
         raise AccuracyError(
-            f"accuracy: no run from this start comes to {span(time)}, be it by contact or trouble: give an integrator"
+            f"accuracy: no trial run comes to {span(time)}: give an integrator to see what happens there"
+        )
+    if (sensitivity := problem.sensitivity(REFERENCE, time, count, reference)) is not None:
+        sensitivity.refuse(accuracy, end)
+    if apart > accuracy:
+        raise AccuracyError(
+            f"accuracy: after {span(time)} trials still differ by {apart:.1g} with {MOST} steps an orbit: ask for a "
+            "shorter run"
         )
     best: Candidate | None = None
     for method in problem.methods():
@@ -294,7 +299,7 @@ def plan(problem: Problem, end: float, accuracy: float, longest: float) -> Plan:
         f"{accuracy:g} after {span(end)}, by trials over {span(time)}: {steps:.3g} steps in the fastest orbit of "
         f"{span(problem.fastest)}"
     )
-    return Plan(best.integrator, best.power, best.error if time == end else 0.0, reason)
+    return Plan(best.integrator, best.power, best.error, reason)
 
 
 def _fitted(
