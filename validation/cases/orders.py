@@ -115,14 +115,15 @@ def check_order(arc: Arc, method: Method, window: Window, exact: Snapshot, *, he
     """Return the check of a method's order in all quantities of all bodies."""
     found = of_counts(arc, method, exact, window.counts)
     each = slopes(window.counts, found)
-    rigid = sum(not body.is_point for body in arc.system.bodies)
+    quantities = sum(2 if body.is_point else 4 for body in arc.system.bodies)
     return Check(
-        f"{arc.name}, {method.name}: order",
+        f"{arc.name}, {method.name}: slope minus {method.order}, the largest of every quantity and body",
         float(np.abs(each - method.order).max()) if each.size else np.nan,
         window.tolerance,
         "the next power of the step, and round-off in the smallest errors",
-        shown=f"{each.min():.3f} to {each.max():.3f} in {each.size} of {2 * found.shape[2] + 2 * rigid} quantities",
+        shown="" if headline else f"{each.min():.3f} to {each.max():.3f} in {each.size} of {quantities} quantities",
         headline=headline,
+        roundoff=True,
     )
 
 
@@ -167,16 +168,15 @@ def work(arc: Arc, exact: Snapshot) -> Picture:
     figure.set_size_inches(16, 4.6)
     caption = (
         "Error of every scheme on the tumbling pair against what it costs. Compositions of the variational step, blue, "
-        "pay for the primary's spin in its attitude; the splittings, red and green, turn a free body exactly, and their "
-        "error is that of gravity alone."
+        "pay for the primary's spin in its attitude; the splittings, red and green, turn a free body exactly: what is "
+        "left is due to gravity."
     )
     return Picture("orders", figure, caption)
 
 
 def run(effort: Effort) -> Findings:
     """Measure all slopes."""
-    checks = []
-    pictures = []
+    checks, pictures = [], []
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ba.errors.GravityWarning)  # the oracle's gravity ends where ours does
         for arc in arcs():
@@ -186,13 +186,13 @@ def run(effort: Effort) -> Findings:
                 pictures.append(work(arc, exact))
     notes = [
         "A slope is fitted through the errors above 1e-13, those with few roundings in them, of each quantity that has "
-        "three or more such errors. The exact rotor leaves to the splittings so little error in the fast primary's "
-        "attitude that round-off takes over early. The splitting of order 10 comes down to round-off while its steps on "
-        "the tumbling pair are still too long for a law, so it is measured on the coupled pair, whose bodies are longer "
-        "and nearer to each other.",
+        "three or more such errors. The exact rotor leaves so little error in the fast primary's attitude that "
+        "round-off takes over early. The splitting of order 10 comes down to round-off while its steps on the tumbling "
+        "pair are still too long for a law, so it is measured on the coupled pair, of longer bodies that are nearer to "
+        "each other.",
         "Kepler splittings are of order 4 as the step goes to zero, whatever their names promise: those orders are for "
-        "a perturbation that is small in all that it does. The torque on a body is as small as its moments' differences, "
-        "but it has nothing to be small beside: a body that librates does so because of it. The case "
+        "a perturbation that is small in all that it does. The torque on a body is as small as the differences of its "
+        "moments, but it has nothing to be small beside: a body that librates does so because of it. The case "
         "small-perturbation shows the promised orders where the bodies are nearly round.",
     ]
     return Findings(checks, pictures, notes)

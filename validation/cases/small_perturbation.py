@@ -65,12 +65,12 @@ def checks_of(found: Found) -> list[Check]:
     ]
     return [
         Check(
-            f"{name}: power of the {what}: {expected}",
+            f"{name}: power of the {what}, minus {expected}",
             power - expected,
             tolerance,
             why,
-            shown=f"{power:.3f}",
             headline=expected != 4,
+            roundoff=True,
         )
         for name, power, what, expected, tolerance, why in powers
     ]
@@ -108,7 +108,7 @@ def run(effort: Effort) -> Findings:
     found = {name: {share: errors_of(name, share, exact[share], COUNTS) for share in SHARES} for name in METHODS}
     note = (
         "The tumbling pair with a share of the differences of its moments about their means. The kicks are then in "
-        "proportion to the share, torques too, while the rest, Kepler motion with exact rotation, is solved: errors are "
+        "proportion to the share, torques too, while Kepler motion with exact rotation is solved: errors are "
         "share h^10 + share^2 h^4 for ABA(10, 4), share h^8 + share^2 h^6 + share^3 h^4 for ABA(8, 6, 4). The whole "
         "differences of a real body are not small in this sense, and the last terms rule. They are small in another: "
         "at 20 steps an orbit the secondary's attitude is good to 4e-7 rad."
