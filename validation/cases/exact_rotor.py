@@ -232,11 +232,11 @@ def draw(found: dict[str, tuple[Tops, Errors]]) -> Picture:
         turns, style = turns_of(tops), {"color": drawing.COLOURS[k], "ms": 1.5, "label": name}
         seen = error.attitude > 0
         left.loglog(turns[seen], error.attitude[seen], ".", **style)
-        if np.any(tops.distance != turns) and name != LONG:
+        if not np.allclose(tops.distance, turns):
             right.loglog(tops.distance[seen], (error.attitude / turns)[seen], ".", **style)
     ends = np.array([1e-6, 30])
     left.loglog(ends, ROUNDING * ends, "k--", lw=0.9, label="half a unit in the last place of h Omega")
-    left.set(xlabel="h Omega [rad]", ylabel="error of the attitude [rad]", ylim=(1e-25, 1e-10))
+    left.set(xlabel="h Omega [rad]", ylabel="error of the attitude [rad]", ylim=(1e-25, 1e-7))
     right.set(
         xlabel="relative difference of moments, or tilt from the axis [rad]",
         ylabel="error of the attitude over h Omega",
