@@ -1,7 +1,8 @@
-"""What one step costs, of a pair and of several bodies: ``python -m validation.benchmark``.
+"""What a step and a stage cost, of a pair, of several bodies and of points: ``python -m validation.benchmark``.
 
 One core, warm, interleaved, the median of several rounds. Absolute times depend on the machine and its neighbours; the
-ratio to a plain vectorised sum over 256 point pairs, taken in the same rounds, hardly does.
+ratio to a plain vectorised sum over 256 point pairs, taken in the same rounds, hardly does. Every time is that of the
+loop of a run: what is watched at each step, and the look for contact, are in it.
 """
 
 import statistics
@@ -15,9 +16,21 @@ import numpy as np
 import binaryast as ba
 from binaryast import working
 from binaryast.gravity import Gravity
-from validation.steps import take_steps
+from binaryast.integrators import Stepping
+from validation import benchmark_points
+from validation.steps import SECOND_ORDER, take_steps
+from validation.timing import interleaved
 
 ROUNDS = 15
+PLAIN = "plain vectorised sum over 256 point pairs"
+SECOND = 1 * u.s  # the steps that are taken are given with each job
+FAMILIES: dict[str, tuple[Stepping, float]] = {  # each with its step of Didymos [s]
+    "LGVI, order 2": (ba.LGVI(SECOND), 40.0),
+    "LGVI, order 8": (ba.LGVI(SECOND, order=8), 300.0),
+    "Splitting rkn6a": (ba.Splitting(SECOND), 600.0),
+    "Splitting ss10": (ba.Splitting(SECOND, scheme="ss10"), 1200.0),
+    "KeplerSplitting aba864": (ba.KeplerSplitting(SECOND), 600.0),
+}
 
 
 @numba.njit(fastmath=True, error_model="numpy")
@@ -50,7 +63,13 @@ def stepper(
 
 
 def steps_of(
-    system: ba.System, state: ba.State, h: float, *, save: bool = False, inertial: bool = False
+    system: ba.System,
+    state: ba.State,
+    h: float,
+    *,
+    integrator: Stepping = SECOND_ORDER,
+    save: bool = False,
+    inertial: bool = False,
 ) -> Callable[[int], None]:
     """Return a function that takes watched steps of a system."""
     w = working.of(system, state, inertial=inertial)
@@ -58,7 +77,7 @@ def steps_of(
 
     def take(count: int) -> None:
         w.state[:] = start
-        take_steps(w, h, count, save=10 if save else 0, touching=True)
+        take_steps(w, h, count, integrator=integrator, save=10 if save else 0, touching=True)
 
     return take
 
@@ -93,38 +112,63 @@ def scaling() -> None:
     print(f"fit: {shares[0]:.3f} us for each body and {shares[1]:.3f} us for each of the n (n - 1)/2 pairs")
 
 
-def main() -> None:
-    """Measure and print."""
+def plain() -> tuple[Callable[[int], object], int]:
+    """Return the job of the plain sum, and how often it is done in a round."""
     random = np.random.default_rng(0)
     clouds = [
         np.vstack([random.normal(size=(3, 16)) + np.array([[offset], [0], [0]]), np.ones(16)]) for offset in (0.0, 10.0)
     ]
-    second = ba.SecondDegree()
-    jobs: dict[str, tuple[Callable[[int], object], int]] = {
-        "plain vectorised sum over 256 point pairs": (lambda n: plain_sum(*clouds, n), 40_000),
-        "LGVI step, second degree (didymos)": (stepper("didymos", 40.0, second), 60_000),
-        "the same, every 10th step saved": (stepper("didymos", 40.0, second, save=True), 60_000),
-        "LGVI step, degree 4 (didymos)": (stepper("didymos", 40.0), 60_000),
-        "LGVI step, 2 x 2 point pairs (dumbbells)": (stepper("dumbbells", 1e-4), 60_000),
-        "LGVI step, second degree, inertial frame": (stepper("didymos", 40.0, second, inertial=True), 60_000),
-    }
-    times: dict[str, list[float]] = {name: [] for name in jobs}
-    for job, _ in jobs.values():
-        job(10)
-    for _ in range(ROUNDS):
-        for name, (job, count) in jobs.items():
-            began = time.perf_counter()
-            job(count)
-            times[name].append((time.perf_counter() - began) / count * 1e6)
-    reference = times["plain vectorised sum over 256 point pairs"]
-    print(f"{'':44} {'us, median':>12} {'us, best':>10} {'ratio':>8}")
+    return lambda n: plain_sum(*clouds, n), 40_000
+
+
+def show(title: str, times: dict[str, list[float]], pieces: dict[str, int] | None = None) -> None:
+    """Print times in us, each over the number of its pieces, beside the plain sum of the same rounds."""
+    print(f"\n{title:44} {'us, median':>12} {'us, best':>10} {'ratio':>8}")
     for name, values in times.items():
-        ratio = statistics.median(value / other for value, other in zip(values, reference, strict=True))
-        print(f"{name:44} {statistics.median(values):12.3f} {min(values):10.3f} {ratio:8.2f}")
+        each = np.array(values) / (pieces or {}).get(name, 1)
+        ratio = statistics.median(each / times[PLAIN])
+        print(f"{name:44} {statistics.median(each):12.3f} {each.min():10.3f} {ratio:8.2f}")
+
+
+def steps() -> None:
+    """Measure steps of order 2 and print what they cost."""
+    second = ba.SecondDegree()
+    times = interleaved(
+        {
+            PLAIN: plain(),
+            "LGVI step, second degree (didymos)": (stepper("didymos", 40.0, second), 60_000),
+            "the same, every 10th step saved": (stepper("didymos", 40.0, second, save=True), 60_000),
+            "LGVI step, degree 4 (didymos)": (stepper("didymos", 40.0), 60_000),
+            "LGVI step, 2 x 2 point pairs (dumbbells)": (stepper("dumbbells", 1e-4), 60_000),
+            "LGVI step, second degree, inertial frame": (stepper("didymos", 40.0, second, inertial=True), 60_000),
+        },
+        ROUNDS,
+    )
+    show("one step of order 2", times)
     pair, inertial = (times[name] for name in times if name.startswith("LGVI step, second degree"))
     ratio = statistics.median(two / one for one, two in zip(pair, inertial, strict=True))
     print(f"inertial frame over relative, median of rounds: {ratio:.2f}")
+
+
+def stages() -> None:
+    """Measure steps of every family at three degrees and print what a stage costs: an evaluation of gravity and all."""
+    jobs, pieces = {PLAIN: plain()}, {}
+    system, state = ba.catalogue.load("didymos")
+    for degree, gravity in {2: ba.SecondDegree(), 4: ba.Multipole(4), 8: ba.Multipole(8)}.items():
+        for family, (integrator, h) in FAMILIES.items():
+            name = f"{family}, degree {degree}"
+            job = steps_of(ba.System(system.bodies, gravity), state, h, integrator=integrator)
+            pieces[name] = integrator.shares.stages
+            jobs[name] = job, 20_000 // pieces[name] // (4 if degree == 8 else 1)
+    show("one stage, a step over its stages (didymos)", interleaved(jobs, ROUNDS), pieces)
+
+
+def main() -> None:
+    """Measure and print."""
+    steps()
+    stages()
     scaling()
+    benchmark_points.main()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,8 @@
-"""The methods under test, each as a function from a start to where the bodies are after so many equal steps."""
+"""The methods under test, each as a function from a start to where the bodies are after so many equal steps.
+
+The printed maps and the production steps of order 2 are what most cases ask; every scheme of every family has a method
+too, by `of_family`.
+"""
 
 import warnings
 from collections.abc import Callable, Sequence
@@ -10,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 import binaryast as ba
 from binaryast.equations.legendre import Snapshot
+from binaryast.integrators import Stepping
 from validation.differences import snapshot_of
 from validation.fitting import to_zero
 
@@ -17,28 +22,43 @@ Steps = Callable[[ba.System, ba.State, float, int], Snapshot]  # system, start, 
 
 
 class Method(NamedTuple):
-    """A method with its order; ``end`` gives where the bodies are after a time in so many steps."""
+    """A method with its order; ``end`` gives where the bodies are after a time in so many steps.
+
+    ``stages`` is how often a step evaluates gravity.
+    """
 
     name: str
     order: int
     end: Steps
+    stages: int = 1
 
 
-def propagated(frame: str) -> Steps:
-    """Return the production steps of `binaryast.LGVI` in a frame."""
+def propagated(family: type[Stepping] = ba.LGVI, **choices: str) -> Steps:
+    """Return the production steps of an integrator, with the choices that it has besides the step."""
 
     def end(system: ba.System, state: ba.State, time: float, count: int) -> Snapshot:
         step = time / count * (1 + 1e-12) * u.s  # the run takes the largest one up to this that divides the time
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ba.errors.StepWarning)  # long steps show the order
             run = ba.propagate(
-                system, state, duration=time * u.s, integrator=ba.LGVI(step, frame=frame), save_every=time * u.s
+                system, state, duration=time * u.s, integrator=family(step, **choices), save_every=time * u.s
             )
         if run.steps != count or run.status != "completed":
             raise RuntimeError(f"expected {count} steps, got {run.steps}: {run.status} {run.message}")
         return snapshot_of(run[-1])
 
     return end
+
+
+def of_family(family: type[Stepping], **choices: str) -> dict[str, Method]:
+    """Return the methods of a family by the names of their schemes; ``choices`` are the same for all, as the frame."""
+    said = "".join(f", {frame} frame" for frame in choices.values())
+    return {
+        name: Method(
+            f"{family.__name__} {name}{said}", scheme.order, propagated(family, scheme=name, **choices), scheme.stages
+        )
+        for name, scheme in family.schemes.items()
+    }
 
 
 def printed(frame: str) -> Steps:
@@ -51,8 +71,8 @@ def printed(frame: str) -> Steps:
     return end
 
 
-RELATIVE = Method("LGVI, relative frame", 2, propagated("relative"))
-INERTIAL = Method("LGVI, inertial frame", 2, propagated("inertial"))
+RELATIVE = Method("LGVI, relative frame", 2, propagated(frame="relative"))
+INERTIAL = Method("LGVI, inertial frame", 2, propagated(frame="inertial"))
 PRINTED_RELATIVE = Method("(118)-(127) as printed", 2, printed("relative"))
 PRINTED_INERTIAL = Method("(93)-(97) as printed", 2, printed("inertial"))
 OF_PAIRS = (RELATIVE, INERTIAL, PRINTED_RELATIVE, PRINTED_INERTIAL)

@@ -109,6 +109,21 @@ MISTAKES = {
         "ways = 3 * prod(",
         "ways = 4 * prod(",
     ),
+    "digits-of-scheme": Mistake(
+        "two digits exchanged in a kick of rkn6a", "schemes.py", "0.328567693746804", "0.328576693746804"
+    ),
+    "elliptic-series": Mistake(
+        "a coefficient in the series of the elliptic sine, exact rotor",
+        "kernels/rotor.py",
+        "(p2 + 12.0 * m) * (1 / 120)",
+        "(p2 + 14.0 * m) * (1 / 120)",
+    ),
+    "points-twice": Mistake(
+        "the attraction of points kept in the kicks of Kepler splittings",
+        "kernels/pair/kepler_splitting.py",
+        "return gradient[0] - k * x[0], gradient[1] - k * x[1], gradient[2] - k * x[2]",
+        "return gradient[0], gradient[1], gradient[2] - 0.0 * k",
+    ),
 }  # fmt: skip
 
 

@@ -1,7 +1,7 @@
 """What the variational maps keep, and what a Runge-Kutta method does not: ``python -m validation.structure``.
 
-Symplecticity by a finite-difference Jacobian, reversal, momenta and rotations over 10^5 to 10^7 steps, the paper's
-Figs 5 and 6, and a year of a triple.
+Symplecticity by a finite-difference Jacobian, reversal, energy, momenta and rotations over 10^5 to 10^7 stages of each
+family, the paper's Figs 5 and 6, and a year of a triple.
 
 A variation of a body is (delta x, eta, delta gamma, delta Pi) with delta R = R S(eta) (16). The canonical form of two
 of them on T*SE(3) is dx1.dgamma2 - dx2.dgamma1 + eta1.dPi2 - eta2.dPi1 + Pi.(eta1 x eta2).
@@ -9,6 +9,7 @@ of them on T*SE(3) is dx1.dgamma2 - dx2.dgamma1 + eta1.dPi2 - eta2.dPi1 + Pi.(et
 
 import warnings
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import astropy.units as u
@@ -19,6 +20,7 @@ from scipy.spatial.transform import Rotation
 import binaryast as ba
 from binaryast import working
 from binaryast.equations.legendre import Snapshot
+from binaryast.integrators import Stepping
 from validation.cases.paper import UNIT_OF_ENERGY
 from validation.steps import snapshot, take_steps
 from validation.systems import four_bodies, tumbling_pair
@@ -28,10 +30,10 @@ WIDTH = 2e-3  # of the differences, in units of the system
 WEIGHTS = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))  # of order 8: truncation below 1e-15
 
 
-def production(system: ba.System, state: ba.State, h: float, *, inertial: bool) -> Snapshot:
+def production(system: ba.System, state: ba.State, h: float, *, integrator: Stepping) -> Snapshot:
     """Take one production step."""
-    w = working.of(system, state, inertial=inertial)
-    take_steps(w, h, 1)
+    w = working.of(system, state, inertial=integrator.is_inertial(len(system.bodies)))
+    take_steps(w, h, 1, integrator=integrator)
     return snapshot(w, h)
 
 
@@ -64,13 +66,35 @@ OTHERS: dict[str, Map] = {
     "RK45": lambda *a: runge_kutta(*a, method="RK45"),
     "DOP853": lambda *a: runge_kutta(*a, method="DOP853"),
 }
-MAPS: dict[str, Map] = {
-    "the production step of a pair": lambda *a: production(*a, inertial=False),
-    "the production step of bodies": lambda *a: production(*a, inertial=True),
-    "(118)-(127)": lambda *a: printed(*a, frame="relative"),
-    "(93)-(97)": lambda *a: printed(*a, frame="inertial"),
+SECOND = 1 * u.s  # the steps that are taken are given with each look
+RELATIVE: dict[str, Stepping] = {
+    "LGVI of order 2": ba.LGVI(SECOND),
+    "LGVI of order 4": ba.LGVI(SECOND, order=4),
+    "LGVI of order 8": ba.LGVI(SECOND, order=8),
+    "Splitting rkn6a": ba.Splitting(SECOND),
+    "Splitting ss10": ba.Splitting(SECOND, scheme="ss10"),
+    "KeplerSplitting aba864": ba.KeplerSplitting(SECOND),
 }
-OF_BODIES = ("the production step of bodies", "(93)-(97)")
+INERTIAL: dict[str, Stepping] = {
+    "LGVI of order 2, inertial": ba.LGVI(SECOND, frame="inertial"),
+    "LGVI of order 8, inertial": ba.LGVI(SECOND, order=8, frame="inertial"),
+    "Splitting rkn6a, inertial": ba.Splitting(SECOND, frame="inertial"),
+    "Splitting ss10, inertial": ba.Splitting(SECOND, scheme="ss10", frame="inertial"),
+}
+INTEGRATORS = RELATIVE | INERTIAL
+MAPS: dict[str, Map] = {
+    name: partial(production, integrator=integrator) for name, integrator in INTEGRATORS.items()
+} | {
+    "(118)-(127)": partial(printed, frame="relative"),
+    "(93)-(97)": partial(printed, frame="inertial"),
+}
+OF_BODIES = (*INERTIAL, "(93)-(97)")
+EXACT = tuple(name for name in INTEGRATORS if "Splitting" in name)  # these turn bodies as far as a step may be long
+
+
+def of_setting(setting: "Setting") -> dict[str, Map]:
+    """Return the maps that apply to a setting."""
+    return {name: step for name, step in MAPS.items() if len(setting.system.bodies) == 2 or name in OF_BODIES}
 
 
 class Setting(NamedTuple):
@@ -95,6 +119,11 @@ def settings() -> dict[str, Setting]:
         "a tumbling pair": Setting(*tumbling_pair(), 1050.0, 1000.0, 5000.0),
         "four bodies": Setting(*four_bodies(1e10), 1050.0, 1000.0, 5000.0),
     }
+
+
+def longer(setting: Setting) -> Setting:
+    """Return a setting with a step four times as long: h Omega is about 3."""
+    return setting._replace(h=4 * setting.h)
 
 
 class Chart:
@@ -160,38 +189,100 @@ def symplectic_defect(step: Map, s: Setting) -> float:
     return float(np.abs((jacobian.T @ after @ jacobian - before) / np.outer(unit, unit)).max())
 
 
-def reversal_error(system: ba.System, state: ba.State, h: float, *, inertial: bool, count: int = 1) -> float:
+def reversal_error(system: ba.System, state: ba.State, h: float, integrator: Stepping, count: int = 1) -> float:
     """Return how far some steps forward and as many back lead away: of distance, speed, radian and spin."""
-    w = working.of(system, state, inertial=inertial)
+    w = working.of(system, state, inertial=integrator.is_inertial(len(system.bodies)))
     start = w.from_rows(w.state[None, : w.row_size], np.zeros(1))
-    take_steps(w, h, count)
-    take_steps(w, -h, count)
+    take_steps(w, h, count, integrator=integrator)
+    take_steps(w, -h, count, integrator=integrator)
     end = w.from_rows(w.state[None, : w.row_size], np.zeros(1))
     return max(float(np.abs(one - two).max() / np.abs(two).max()) for one, two in zip(end[:4], start[:4], strict=True))
 
 
 class Kept(NamedTuple):
-    """Over some steps: energy and angular momentum relative, linear momentum over sum m |v|, rotation error."""
+    """Over a run: energy over |E0| and over |U0|, momenta, rotation error; and how much of the energy is a drift.
+
+    The angular momentum is relative, the linear one over sum m |v|; the drift is over the whole run and over |E0|, with
+    its standard deviation.
+    """
 
     energy: float
+    energy_over_potential: float
     angular: float
     linear: float
     rotation: float
     rotation_of_rows: float
+    drift: tuple[float, float]
 
 
-def kept(name: str, step: float, count: int, frame: str | None = None) -> Kept:
-    """Return what a run of a catalogue entry keeps."""
-    run = ba.propagate(
-        *ba.catalogue.load(name), duration=count * step * u.s, integrator=ba.LGVI(step * u.s, frame=frame)
-    )
+def kept(system: ba.System, state: ba.State, integrator: Stepping, stages: int) -> Kept:
+    """Return what a run of so many stages keeps: as many evaluations of gravity."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ba.errors.StepWarning)
+        run = ba.propagate(
+            system, state, duration=stages // integrator.shares.stages * integrator.step, integrator=integrator
+        )
     return Kept(
         run.max_relative_energy_error,
+        run.max_energy_error_over_potential,
         run.max_relative_angular_momentum_error,
         run.max_relative_linear_momentum_error,
         run.max_rotation_error,
         float(run.rotation_error.max()),
+        drift(run.energy.value / abs(run.energy.value[0])),
     )
+
+
+def drift(values: np.ndarray, blocks: int = 100) -> tuple[float, float]:
+    """Return how far values go from end to end, by a straight line through means of blocks, and its deviation."""
+    means = np.array([part.mean() for part in np.array_split(values - values[0], blocks)])
+    (slope, _), covariance = np.polyfit(np.arange(blocks), means, 1, cov=True)
+    return float(slope) * blocks, float(np.sqrt(covariance[0, 0])) * blocks
+
+
+class Long(NamedTuple):
+    """A long run: what its system is called, and a method with steps so short that its truncation is round-off."""
+
+    name: str
+    system: ba.System
+    state: ba.State
+    integrator: Stepping
+
+
+def long_runs() -> list[Long]:
+    """Return the runs in which the families show their round-off."""
+    didymos, tumbling = ("didymos", *ba.catalogue.load("didymos")), ("tumbling pair", *tumbling_pair())
+    second = u.s
+    return [
+        Long(*didymos, ba.LGVI(120 * second, order=8)),
+        Long(*didymos, ba.Splitting(300 * second)),
+        Long(*didymos, ba.Splitting(300 * second, frame="inertial")),
+        Long(*didymos, ba.Splitting(900 * second, scheme="ss10")),
+        Long(*didymos, ba.KeplerSplitting(300 * second)),
+        Long(*tumbling, ba.LGVI(90 * second, order=8)),
+        Long(*tumbling, ba.Splitting(200 * second)),
+        Long(*tumbling, ba.Splitting(200 * second, frame="inertial")),
+        Long(*tumbling, ba.Splitting(900 * second, scheme="ss10")),
+        Long(*tumbling, ba.KeplerSplitting(120 * second)),
+    ]
+
+
+def conserved() -> None:
+    """Print what runs of 10^5 to 10^7 stages keep."""
+    print("kept, of energy over |E0| and |U0|, angular and linear momentum, rotation at every step and in saved rows;")
+    print("and the drift of the energy over the run, with its deviation")
+    runs = [
+        Long("didymos", *ba.catalogue.load("didymos"), ba.LGVI(40 * u.s)),
+        Long("didymos", *ba.catalogue.load("didymos"), ba.LGVI(40 * u.s, frame="inertial")),
+        Long("sn263", *ba.catalogue.load("sn263"), ba.LGVI(60 * u.s)),
+        *long_runs(),
+    ]
+    for run in runs:
+        method = f"{type(run.integrator).__name__} {run.integrator.shares.name}, {run.integrator.frame or 'default'}"
+        print(f"  {run.name}, {method} frame, steps of {run.integrator.step:g}")
+        for stages in (10**5, 10**6, 10**7):
+            *figures, (total, deviation) = kept(run.system, run.state, run.integrator, stages)
+            print(f"    {stages:8}:", *(f"{value:.1e}" for value in figures), f"drift {total:+.1e} +- {deviation:.1e}")
 
 
 def figure_5() -> tuple[float, float]:
@@ -231,22 +322,18 @@ def main() -> None:
     """Print all of it."""
     print("symplectic: largest element of D^T W' D - W")
     for where, setting in settings().items():
-        for name, step in MAPS.items():
-            if len(setting.system.bodies) == 2 or name in OF_BODIES:
-                print(f"  {where}, {name}: {symplectic_defect(step, setting):.1e}")
+        for name, step in of_setting(setting).items():
+            long = f", at 4 h {symplectic_defect(step, longer(setting)):.1e}" if name in EXACT else ""
+            print(f"  {where}, {name}: {symplectic_defect(step, setting):.1e}{long}")
         for name, step in OTHERS.items():
-            print(f"  {where}, to compare, {name}: {symplectic_defect(step, setting):.1e}")
-    print("reversal: one step forward and back, relative")
-    for where, (system, state), h in (("tumbling pair", tumbling_pair(), 20.0), ("four bodies", four_bodies(), 20.0)):
-        for inertial in (False, True):
-            if len(system.bodies) == 2 or inertial:
-                error = reversal_error(system, state, h, inertial=inertial)
-                print(f"  {where}, {'inertial' if inertial else 'relative'}: {error:.1e}")
-    print("kept by production runs: energy, angular and linear momentum, rotation at every step and in saved rows")
-    for name, step, frame in (("didymos", 40.0, None), ("didymos", 40.0, "inertial"), ("sn263", 60.0, None)):
-        for count in (10**5, 10**6, 10**7):
-            figures = " ".join(f"{value:.2e}" for value in kept(name, step, count, frame))
-            print(f"  {name}, {frame or 'default'} frame, {count:8} steps of {step:g} s: {figures}")
+            at = symplectic_defect(step, setting), symplectic_defect(step, longer(setting))
+            print(f"  {where}, to compare, {name}: {at[0]:.1e}, at 4 h {at[1]:.1e}")
+    print("reversal: one step forward and back, and 2000, relative")
+    for where, (system, state) in (("tumbling pair", tumbling_pair()), ("four bodies", four_bodies())):
+        for name, integrator in (INTEGRATORS if len(system.bodies) == 2 else INERTIAL).items():
+            once, often = (reversal_error(system, state, 20.0, integrator, count) for count in (1, 2000))
+            print(f"  {where}, {name}: {once:.1e}, {often:.1e}")
+    conserved()
     energy, rotation = figure_5()
     print(
         f"Fig. 5, (118)-(127) as printed: energy {energy:.4e} (paper 2.6966e-7), rotation {rotation:.2e} (2.8657e-13)"

@@ -25,6 +25,37 @@ def tumbling_pair() -> tuple[ba.System, ba.State]:
     return system, state
 
 
+def coupled_pair() -> tuple[ba.System, ba.State]:
+    """Two long bodies in a slow tumble that pass near each other: each turns the other, and no spin is fast."""
+    primary = ba.RigidBody("A", ba.Ellipsoid(500 * u.m, 300 * u.m, 250 * u.m), density=2400 * u.kg / u.m**3)
+    secondary = ba.RigidBody("B", ba.Ellipsoid(300 * u.m, 180 * u.m, 120 * u.m), density=2400 * u.kg / u.m**3)
+    system = ba.System([primary, secondary])
+    spins = [[1e-4, -1e-4, 2e-4], [-1e-4, 1.5e-4, 2e-4]] * u.rad / u.s
+    state = ba.State.from_elements(
+        system,
+        semi_major_axis=1300 * u.m,
+        eccentricity=0.3,
+        inclination=20 * u.deg,
+        longitude_of_ascending_node=50 * u.deg,
+        argument_of_periapsis=70 * u.deg,
+        true_anomaly=30 * u.deg,
+        spins=list(spins),
+    )
+    return system, state
+
+
+def nearly_round(share: float) -> tuple[ba.System, ba.State]:
+    """Return the tumbling pair with so much of the differences of its moments, about the same means."""
+    system, state = tumbling_pair()
+    bodies = []
+    for body in system.bodies:
+        mean = body.si.moments.mean()
+        moments = mean + share * (body.si.moments - mean)
+        ball = ba.Sphere(np.sqrt(2.5 * mean / body.si.mass) * u.m)
+        bodies.append(ba.RigidBody(body.name, ball, mass=body.si.mass * u.kg, inertia=moments * u.kg * u.m**2))
+    return ba.System(bodies), state
+
+
 def wobbling_pair() -> tuple[ba.System, ba.State]:
     """Didymos with its pole tilted by 5 degrees and wobbling, Dimorphos librating and inclined: regular, not planar."""
     system, _ = ba.catalogue.load("didymos")
