@@ -67,6 +67,7 @@ def test_less_than_round_off_is_refused_with_what_can_be_had(didymos: ba.System)
         ba.propagate(didymos, state, duration=60 * u.day, accuracy=1e-13)
 
 
+@pytest.mark.filterwarnings("ignore::binaryast.errors.GravityWarning")
 def test_a_run_that_ends_by_contact(didymos: ba.System) -> None:
     state = ba.State(
         [[0, 0, 0], [1.5, 0, 0]] * u.km, np.zeros((2, 3)) * u.m / u.s, [np.eye(3)] * 2, np.zeros((2, 3)) * u.rad / u.s
