@@ -100,6 +100,13 @@ def placed_touches(x: Vector, r: Matrix, surfaces: Array, one: int, two: int) ->
 
 
 @jit()
+def can_touch(surfaces: Array, one: int, two: int) -> bool:
+    """Whether both bodies have a surface, and one of them an extent: two points never meet."""
+    both = surfaces[HEADER * one + COUNT] * surfaces[HEADER * two + COUNT]
+    return bool(both * (surfaces[HEADER * one + RADIUS] + surfaces[HEADER * two + RADIUS]) > 0.0)
+
+
+@jit()
 def touch_on_the_way(
     before: Vector, after: Vector, r2: Matrix, r1: Matrix, surfaces: Array, one: int, two: int
 ) -> bool:
@@ -114,7 +121,7 @@ def touch_on_the_way(
     closest = -dot(before, way) / square if square > 0.0 else 1.0  # of the whole straight line
     point = (before[0] + closest * way[0], before[1] + closest * way[1], before[2] + closest * way[2])
     inside = reach * reach - dot(point, point)
-    if inside <= 0.0 or surfaces[HEADER * one + COUNT] * surfaces[HEADER * two + COUNT] == 0.0:
+    if inside <= 0.0 or not can_touch(surfaces, one, two):
         return False
     half = sqrt(inside / square) if square > 0.0 else 0.0
     first, last = max(0.0, closest - half), min(1.0, closest + half)

@@ -3,6 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from binaryast.gravity import PointMass
 from binaryast.kernels.bodies import layout
 from binaryast.kernels.bodies.contact import touching
 from binaryast.kernels.bodies.loop import advance
@@ -85,6 +86,7 @@ def constants(system: System) -> Floats:
     begin = 0
     for pair in system.pairs:
         end = begin + len(pair.parameters)
-        parts.append(np.array([pair.primary, pair.secondary, begin, end], dtype=float))
+        as_points = isinstance(pair.gravity, PointMass)
+        parts.append(np.array([pair.primary, pair.secondary, begin, end, as_points], dtype=float))
         begin = end
     return np.concatenate(parts)

@@ -67,19 +67,20 @@ def row_size_of(n: int) -> int:
 
 
 # Constants: the number of bodies and of pairs; for each body its mass, whether it is a point, and of its principal
-# moments 1/I_i and (I_j - I_k)/I_i, cyclic; for each pair its primary, its secondary, and where its parameters begin
-# and end.
+# moments 1/I_i and (I_j - I_k)/I_i, cyclic; for each pair its primary, its secondary, where its parameters begin and
+# end, and whether it attracts as two points do.
 HEADER = 2
 BODY = 8
 MASS = 0
 IS_POINT = 1
 INVERSE = 2
 RATIOS = 5
-PAIR = 4
+PAIR = 5
 PRIMARY = 0
 SECONDARY = 1
 BEGIN = 2
 END = 3
+AS_POINTS = 4
 
 
 @jit()

@@ -6,6 +6,7 @@ moved.
 """
 
 from collections.abc import Callable
+from math import sqrt
 from typing import Any
 
 from numba import types
@@ -13,6 +14,7 @@ from numba import types
 from binaryast.kernels.arrays import matrix_at, put_quaternion, put_vector, quaternion_at, vector_at
 from binaryast.kernels.attraction import attract
 from binaryast.kernels.bodies.layout import (
+    AS_POINTS,
     BEGIN,
     END,
     INVERSE,
@@ -34,6 +36,7 @@ from binaryast.kernels.bodies.layout import (
 from binaryast.kernels.compensated import add_vector
 from binaryast.kernels.jit import ARRAY, PAIR_POINTERS, Array, Vector, jit
 from binaryast.kernels.pointers import pointer_at
+from binaryast.kernels.so3 import dot
 from binaryast.kernels.status import COMPLETED, NO_ROTATION, NOT_FINITE
 
 
@@ -103,22 +106,37 @@ def exert(state: Array, constants: Array, potentials: Array, parameters: Array) 
     n = int(constants[0])
     for i in range(potential_of(n), remainder_of(n)):
         state[i] = 0.0
+    total, last, on_last = 0.0, 0, (0.0, 0.0, 0.0)  # pairs with one primary follow each other: its sum is kept aside
     for k in range(int(constants[1])):
         pair = pair_constants(n, k)
         two, one = int(constants[pair + PRIMARY]), int(constants[pair + SECONDARY])
         x2, x1 = vector_at(state, 3 * two), vector_at(state, 3 * one)
+        x = (x1[0] - x2[0], x1[1] - x2[1], x1[2] - x2[2])
+        if constants[pair + AS_POINTS]:  # the same, without attitudes
+            inverse_square = 1.0 / dot(x, x)
+            u = -parameters[int(constants[pair + BEGIN])] * sqrt(inverse_square)
+            pull = u * inverse_square
+            total += u
+            add(state, gradient_of(n) + 3 * one, -pull, x)
+            if two != last:
+                add(state, gradient_of(n) + 3 * last, 1.0, on_last)
+                last, on_last = two, (0.0, 0.0, 0.0)
+            on_last = (on_last[0] + pull * x[0], on_last[1] + pull * x[1], on_last[2] + pull * x[2])
+            continue
         u, gradient, torque_2, torque_1 = attract(
-            (x1[0] - x2[0], x1[1] - x2[1], x1[2] - x2[2]),
+            x,
             matrix_at(state, attitude_of(n) + 4 * two),
             matrix_at(state, attitude_of(n) + 4 * one),
             pointer_at(potentials, k),
             parameters[int(constants[pair + BEGIN]) : int(constants[pair + END])],
         )
-        state[potential_of(n)] += u
+        total += u
         add(state, gradient_of(n) + 3 * one, 1.0, gradient)
         add(state, gradient_of(n) + 3 * two, -1.0, gradient)
         add(state, torque_of(n) + 3 * one, 1.0, torque_1)
         add(state, torque_of(n) + 3 * two, 1.0, torque_2)
+    state[potential_of(n)] = total
+    add(state, gradient_of(n) + 3 * last, 1.0, on_last)
 
 
 @jit()

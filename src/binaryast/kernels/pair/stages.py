@@ -119,6 +119,8 @@ def take_stages(
     u, gradient = state[POTENTIAL], vector_at(state, GRADIENT)
     torque_2, torque_1 = vector_at(state, TORQUE_2), vector_at(state, TORQUE_1)
     to_velocity = -h / constants[REDUCED_MASS]
+    turning = body_2[0][0] + body_1[0][0] > 0.0  # points do not
+    r2, r1 = quaternion_to_matrix(a2[0]), quaternion_to_matrix(a1[0])
 
     kick = scheme[0]
     for stage in range(scheme.size // 2):
@@ -128,13 +130,14 @@ def take_stages(
         kick = scheme[2 * stage + 2]
 
         x, rx, v, rv = move(x, rx, v, rv, constants, drift)
-        a2, a1, solved_2, solved_1 = turn_both(a2, body_2, a1, body_1, drift)
-        if not solved_2:
-            return NO_ROTATION
-        if not solved_1:
-            return NO_ROTATION + 1
+        if turning:
+            a2, a1, solved_2, solved_1 = turn_both(a2, body_2, a1, body_1, drift)
+            if not solved_2:
+                return NO_ROTATION
+            if not solved_1:
+                return NO_ROTATION + 1
+            r2, r1 = quaternion_to_matrix(a2[0]), quaternion_to_matrix(a1[0])
 
-        r2, r1 = quaternion_to_matrix(a2[0]), quaternion_to_matrix(a1[0])
         u, gradient, torque_2, torque_1 = attract(x, r2, r1, potential, parameters)
         if not is_finite(u, x, v, a2[2], a1[2]):
             return NOT_FINITE
