@@ -193,12 +193,13 @@ class Problem:
     def reference(self, time: float, wanted: float) -> tuple[Motion | None, int, float]:
         """Return rows that are right to a fraction of what is wanted, or to round-off, the steps, and how right."""
         count = _whole(12 * time / self.fastest)
-        best, last = None, inf
+        best, last, stalls = None, inf, 0
         while count < MOST * time / self.fastest:
             finer = self.motion(REFERENCE, time, count)
             if finer is not None and best is not None:
                 apart = float(errors(best, finer).max())
-                if apart < wanted / 30 or (last < LARGE and apart > last / 2):
+                stalls = stalls + 1 if apart > last / 2 else 0
+                if apart < wanted / 30 or (stalls and last < SMALL) or stalls == 3:  # shorter steps do not help
                     return finer, count, apart
                 last = apart
             best, count = finer, _whole(1.5 * count)
@@ -279,7 +280,7 @@ def plan(problem: Problem, end: float, accuracy: float, longest: float) -> Plan:
         sensitivity.refuse(accuracy, end)
     if apart > accuracy:
         raise AccuracyError(
-            f"accuracy: after {span(time)} trials still differ by {apart:.1g} with {MOST} steps an orbit: ask for a "
+            f"accuracy: after {span(time)} trials still differ by {apart:.1g}, however short their steps: ask for a "
             "shorter run"
         )
     best: Candidate | None = None
