@@ -9,7 +9,7 @@ from validation.accuracies import SETTINGS, error, results
 from validation.systems import tumbling_pair
 
 import binaryast as ba
-from binaryast import choosing
+from binaryast import trials
 from binaryast.errors import AccuracyError, InputError
 
 
@@ -114,6 +114,6 @@ def test_what_is_wrong_with_the_start_is_said_first(didymos: ba.System) -> None:
 
 def test_how_errors_are_carried_on() -> None:
     rows = np.arange(9.0)
-    assert choosing._at_end(rows**1.5, 4.0) == pytest.approx(8**1.5 * 4**1.5, rel=0.1)
-    assert choosing._at_end(rows**5, 4.0) == pytest.approx(8**5 * 4**2)
-    assert choosing._at_end(np.ones(9), 4.0) == pytest.approx(4)
+    assert trials.at_end(rows**1.5, 4.0) == pytest.approx(8**1.5 * 4**1.5, rel=0.1)
+    assert trials.at_end(rows**5, 4.0) == pytest.approx(8**5 * 4**2)
+    assert trials.at_end(np.ones(9), 4.0) == pytest.approx(4)

@@ -24,6 +24,7 @@ from binaryast.state import State
 from binaryast.stepping import SteppedRun, turn_error
 from binaryast.system import Pair, System
 from binaryast.trajectory import Trajectory, TrajectoryFloats
+from binaryast.trials import Trials, rates
 from binaryast.units import Floats, brief, numbers, quantity, span, to_si
 
 if TYPE_CHECKING:
@@ -143,8 +144,8 @@ def _to_accuracy(
     end = float(to_si(duration, "s", "duration", sign="positive"))
     interval = None if save_every is None else float(to_si(save_every, "s", "save_every", sign="positive"))
     SteppedRun(system, state, TRY_OUT, schedule(end, end, interval))  # what is wrong with the start is said first
-    problem = choosing.Problem(system, state)
-    plan = choosing.plan(problem, end, asked, min(end / 4, interval or end))
+    trials = Trials(system, state)
+    plan = choosing.plan(trials, end, asked, min(end / 4, interval or end))
     for _ in range(ATTEMPTS):
         run = SteppedRun(system, state, plan.integrator, schedule(end, plan.integrator.step.value, interval))
         with bar(end, progress) as show:
@@ -153,7 +154,7 @@ def _to_accuracy(
         if outcome.status != "completed":
             return _trajectory(system, state, plan.integrator, outcome, accuracy=asked, choice=plan.reason)
         try:
-            found = problem.estimate(plan, outcome.motion, outcome.step, end, asked)
+            found = choosing.estimate(trials, plan, outcome.motion, outcome.step, end, asked)
         except KeyboardInterrupt:  # what has been computed is kept
             found = None
         if found is None or found.within(asked):
@@ -231,7 +232,7 @@ def _check_turns(system: System, state: State, integrator: Stepping, step: float
 def _check_orbits(system: System, state: State, integrator: Stepping, step: float) -> None:
     """Warn of a step that is long beside the time in which two bodies fall or go round each other, as they are now."""
     longest = integrator.shares.longest
-    for pair, rate in choosing.rates(system, state):
+    for pair, rate in rates(system, state):
         if longest * step * rate > DOUBTFUL_TURN:
             part = "" if integrator.order == 2 else f", with parts of {longest * step:.3g} s,"
             warnings.warn(

@@ -1,0 +1,174 @@
+"""Short runs to be compared: how far they are apart, how errors and disturbances grow along them."""
+
+from collections.abc import Iterator
+from math import ceil, inf, log2, pi, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from binaryast.errors import AccuracyError, StepError
+from binaryast.integrators import Splitting, Stepping
+from binaryast.outcome import Outcome
+from binaryast.schedule import Segment
+from binaryast.state import State
+from binaryast.stepping import SteppedRun
+from binaryast.system import Pair, System
+from binaryast.units import Floats, quantity, span
+from binaryast.working import Motion
+
+ROWS = 8  # at which runs are compared
+MOST = 20_000  # steps in the fastest orbit
+DISTURBANCES = (1e-9, 1e-13)  # of velocities and spins, to see how errors grow; the other where the first grows large
+LARGE = 1e-2  # of a difference: it grows no more in proportion
+ROUNDING = 1e-15  # as if the start had been wrong by so much
+SMALL = 1e-9  # an error that does not fall any more below this is round-off
+REFERENCE = Splitting(quantity(1.0, "s"), "ss10")
+
+
+def rates(system: System, state: State) -> Iterator[tuple[Pair, float]]:
+    """Yield how fast each pair goes, or would fall, round each other now [rad/s]."""
+    position, velocity, _, _ = state.si
+    for pair in system.pairs:
+        x, v = (array[pair.secondary] - array[pair.primary] for array in (position, velocity))
+        distance = float(np.linalg.norm(x))
+        if distance > 0:
+            gm = system.bodies[pair.primary].si.gm + system.bodies[pair.secondary].si.gm
+            yield pair, max(sqrt(gm / distance**3), float(np.linalg.norm(np.cross(x, v))) / distance**2)
+
+
+def errors(one: Motion, other: Motion) -> Floats:
+    """Return how far two motions are apart at their rows: the largest of all bodies.
+
+    Positions count from the primary's and relative to the distance from it, attitudes as angles [rad].
+    """
+    x, y = (motion.position[:, 1:] - motion.position[:, :1] for motion in (one, other))
+    position = np.linalg.norm(x - y, axis=-1) / np.linalg.norm(y, axis=-1)
+    chord = np.linalg.norm(one.attitude - other.attitude, axis=(-2, -1)) / sqrt(8)  # sin of half of the angle
+    angle = 2 * np.arcsin(np.minimum(chord, 1.0))
+    return np.asarray(np.maximum(position.max(axis=1), angle.max(axis=1)))
+
+
+def last_row(motion: Motion) -> Motion:
+    """Return the last row of a motion alone."""
+    return Motion(*(array[-1:] for array in motion))
+
+
+def whole(count: float) -> int:
+    """Return a number of steps of a trial, the same in each of its rows."""
+    return ROWS * ceil(count / ROWS)
+
+
+def at_end(rows: Floats, longer: float) -> float:
+    """Return the error at the end of a run that is so many times longer, growing as in the trial: t to t^2."""
+    return float(rows[len(rows) // 2 + 1 :].max() * longer ** growth_of(rows))
+
+
+def growth_of(rows: Floats) -> float:
+    """Return with which power of the time what is in the rows grows from the second to the last quarter: 1 to 2."""
+    quarter = (len(rows) - 1) // 4
+    middle, last = (
+        float(rows[quarter + 1 : 2 * quarter + 1].max(initial=0)),
+        float(rows[3 * quarter + 1 :].max(initial=0)),
+    )
+    return 1.0 if not 0 < middle < last < inf else min(2.0, max(1.0, log2(last / middle)))
+
+
+class Sensitivity(NamedTuple):
+    """How much of a disturbance of the start is left at times since: a factor for each of the rows."""
+
+    times: Floats
+    factors: Floats
+
+    @property
+    def floor(self) -> float:
+        """What round-off alone leaves at the end."""
+        return ROUNDING * float(self.factors[-1])
+
+    def refuse(self, accuracy: float, end: float) -> None:
+        """Raise where round-off leaves more than is asked at a later end [s], growing on as in the second half.
+
+        Raises
+        ------
+        AccuracyError
+            With what can be reached, and until when the accuracy holds.
+        """
+        longer, growth = end / self.times[-1], growth_of(self.factors)
+        floor = self.floor * longer**growth
+        if floor <= accuracy:
+            return
+        if self.floor <= accuracy:
+            held = self.times[-1] * (accuracy / self.floor) ** (1 / growth)
+        else:
+            grown = np.log(np.maximum.accumulate(np.maximum(self.factors, 1.0)))
+            held = float(np.interp(np.log(accuracy / ROUNDING), grown, self.times))
+        horizon = f"it can be had for the first {span(held)}" if held > 0 else "it cannot be had for any time"
+        raise AccuracyError(
+            f"accuracy: {accuracy:g} after {span(end)} is below what round-off leaves, about {floor:.1g}, for a "
+            f"disturbance of the start grows {floor / ROUNDING:.2g} times; {horizon}"
+        )
+
+
+class Trials:
+    """A system and its start, of which runs are made to compare them."""
+
+    def __init__(self, system: System, state: State) -> None:
+        self.system, self.state = system, state
+        found = [rate for _, rate in rates(system, state)]
+        self.fastest, self.slowest = (2 * pi / rate for rate in (max(found), min(found)))  # periods
+
+    def outcome(self, integrator: Stepping, time: float, count: int, state: State | None = None) -> Outcome:
+        """Return a run of so many equal steps, up to a multiple of its rows: `ROWS`, or as many as there are steps."""
+        rows = min(ROWS, count)
+        stride = ceil(count / rows)
+        segment = Segment(time / (stride * rows), stride * rows, stride)
+        run = SteppedRun(self.system, state or self.state, integrator, [segment])
+        run.go(lambda _: None)
+        outcome = run.outcome()
+        if outcome.status == "interrupted":
+            raise KeyboardInterrupt
+        return outcome
+
+    def motion(self, integrator: Stepping, time: float, count: int, state: State | None = None) -> Motion | None:
+        """Return the rows, None where the run does not come to its end."""
+        try:
+            outcome = self.outcome(integrator, time, count, state)
+        except StepError:
+            return None
+        return outcome.motion if outcome.status == "completed" else None
+
+    def free_time(self, time: float) -> float:
+        """Return a time, or most of the time until two bodies touch, where they do before: also with shorter steps."""
+        for steps in (12, 50, 200):
+            outcome = self.outcome(REFERENCE, time, whole(steps * time / self.fastest))
+            if outcome.status != "contact":
+                return time
+        return 0.9 * float(outcome.time[-1])
+
+    def reference(self, time: float, wanted: float) -> tuple[Motion | None, int, float]:
+        """Return rows that are right to a fraction of what is wanted, or to round-off, the steps, and how right."""
+        count = whole(12 * time / self.fastest)
+        best, last, stalls = None, inf, 0
+        while count < MOST * time / self.fastest:
+            finer = self.motion(REFERENCE, time, count)
+            if finer is not None and best is not None:
+                apart = float(errors(best, finer).max())
+                stalls = stalls + 1 if apart > last / 2 else 0
+                if apart < wanted / 30 or (stalls and last < SMALL) or stalls == 3:  # shorter steps do not help
+                    return finer, count, apart
+                last = apart
+            best, count = finer, whole(1.5 * count)
+        return best, count, last
+
+    def sensitivity(self, integrator: Stepping, time: float, count: int, undisturbed: Motion) -> Sensitivity | None:
+        """Return how a disturbance of velocities and spins grows along a run."""
+        for disturbance in DISTURBANCES:
+            more = 1 + disturbance
+            place, attitude = self.state.position, self.state.attitude
+            disturbed = State(place, self.state.velocity * more, attitude, self.state.spin * more)
+            motion = self.motion(integrator, time, count, disturbed)
+            if motion is None:
+                return None
+            apart = errors(motion, undisturbed)
+            if apart.max() < LARGE:
+                break
+        return Sensitivity(np.linspace(0, time, len(apart)), apart / disturbance)
