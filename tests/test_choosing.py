@@ -20,7 +20,7 @@ from binaryast.errors import AccuracyError, InputError
 def test_the_error_is_below_what_was_asked_and_not_far_below(name: str) -> None:
     for result in results(SETTINGS[name], (1e-5, 1e-9)):
         assert result.true < result.asked
-        assert result.true > result.asked / 100
+        assert result.true > result.asked / 200
         assert result.true / 10 < result.estimated <= result.asked
         assert result.run.accuracy == result.asked
         assert "cheapest of" in result.run.choice
@@ -52,7 +52,7 @@ def test_without_anything_it_is_a_millionth(didymos: ba.System) -> None:
 def test_chaos_is_refused_with_its_horizon() -> None:
     """Within the horizon that is named, the accuracy can be had."""
     system, state = tumbling_pair()
-    with pytest.raises(AccuracyError, match=r"1e-07 after 60 d is below what round-off leaves") as refused:
+    with pytest.raises(AccuracyError, match=r"1e-07 after 60 d is lost to round-off") as refused:
         ba.propagate(system, state, duration=60 * u.day, accuracy=1e-7)
     days = float(re.search(r"for the first ([\d.]+) d", str(refused.value))[1])
     assert 3 < days < 30
@@ -63,7 +63,7 @@ def test_chaos_is_refused_with_its_horizon() -> None:
 
 def test_less_than_round_off_is_refused_with_what_can_be_had(didymos: ba.System) -> None:
     state = ba.catalogue.load("didymos")[1]
-    with pytest.raises(AccuracyError, match=r"1e-13 after 60 d is below what round-off leaves, about \de-12"):
+    with pytest.raises(AccuracyError, match=r"1e-13 after .* is below what round-off leaves, about \de-1[23]"):
         ba.propagate(didymos, state, duration=60 * u.day, accuracy=1e-13)
 
 

@@ -8,18 +8,24 @@ right is looked at when the run is over, see `estimate`.
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import ceil, inf, log2
+from math import inf, log2
 from typing import NamedTuple
+
+import numpy as np
 
 from binaryast.errors import AccuracyError
 from binaryast.integrators import KeplerSplitting, Splitting, Stepping
-from binaryast.trials import MOST, REFERENCE, ROWS, SMALL, Trials, at_end, errors, last_row, whole
+from binaryast.outcome import Outcome
+from binaryast.trials import LARGE, REFERENCE, ROWS, SMALL, Trials, at_end, between, equal, errors, whole
 from binaryast.units import quantity, span
 from binaryast.working import Motion
 
 SAFETY = 4.0  # of the accuracy, this fraction is aimed at
 ORBITS = 10  # of the slowest pair, in a trial
 FIRST = 3  # steps in the fastest orbit
+MOST_KNOWN = 100.0  # by how much the coarser of two runs is taken to be worse, at the most
+CLOSE = 1.1  # of two numbers of steps
+LAST = 3  # rows, of which the worst counts
 STAGE = {Splitting: 0.15, KeplerSplitting: 0.23}  # microseconds, beside gravity; of a pair, or of two bodies of several
 
 
@@ -34,6 +40,8 @@ class Plan(NamedTuple):
         With which power of the step its error falls there.
     error : float
         What the error at the end will be, as far as the trial can tell.
+    floor : float or None
+        What round-off leaves there, where the trial was the whole run: then the error is known.
     reason : str
         Why it was picked.
     """
@@ -41,12 +49,14 @@ class Plan(NamedTuple):
     integrator: Stepping
     power: float
     error: float
+    floor: float | None
     reason: str
 
     def shortened(self, step: float, factor: float) -> "Plan":
         """Return the same method with a shorter step [s]: its error was so many times what may be."""
-        ratio = min(2.0, (SAFETY * factor) ** (1 / self.power))
-        return self._replace(integrator=_stepping(self.integrator, step / ratio), error=self.error / ratio**self.power)
+        ratio = min(2.0, (SAFETY * factor) ** (1 / self.integrator.order))
+        shorter, error = _stepping(self.integrator, step / ratio), self.error / ratio**self.power
+        return self._replace(integrator=shorter, error=error, floor=None)
 
 
 class Estimate(NamedTuple):
@@ -62,7 +72,7 @@ class Estimate(NamedTuple):
 
     def within(self, accuracy: float) -> bool:
         """Whether it is within an accuracy; the part of the steps is only known to a factor."""
-        return self.of_steps <= accuracy / 3 and self.floor <= accuracy
+        return self.of_steps <= accuracy / 2 and self.floor <= accuracy
 
 
 class Candidate(NamedTuple):
@@ -97,13 +107,14 @@ def plan(trials: Trials, end: float, accuracy: float, longest: float) -> Plan:
     if time < some:  # a contact is the end
         end = time
     wanted = accuracy / SAFETY * time / end
-    reference, count, apart = trials.reference(time, wanted)
+    reference, segments, apart = trials.reference(time, wanted)
     if reference is None:
         raise AccuracyError(
             f"accuracy: no trial run comes to {span(time)}: give an integrator to see what happens there"
         )
-    if (sensitivity := trials.sensitivity(REFERENCE, time, count, reference)) is not None:
-        sensitivity.refuse(accuracy, end)
+    sensitivity = trials.sensitivity(REFERENCE, segments, reference)
+    if sensitivity is not None:
+        sensitivity.refuse(accuracy, time)
     if apart > accuracy:
         raise AccuracyError(
             f"accuracy: after {span(time)} trials still differ by {apart:.1g}, however short their steps: ask for a "
@@ -114,8 +125,10 @@ def plan(trials: Trials, end: float, accuracy: float, longest: float) -> Plan:
         found = _fitted(trials, method, Goal(reference, time, end, accuracy / SAFETY, longest), best)
         best = found or best
     if best is None:
+        if sensitivity is not None:
+            sensitivity.refuse(accuracy, end)
         raise AccuracyError(
-            f"accuracy: {accuracy:g} is not reached after {span(time)} by any method, down to {MOST} steps an orbit"
+            f"accuracy: {accuracy:g} is not reached after {span(time)} by any method, however short its steps"
         )
     others = sum(1 for _ in methods(trials)) - 1
     steps = trials.fastest / best.integrator.step.value
@@ -124,29 +137,48 @@ def plan(trials: Trials, end: float, accuracy: float, longest: float) -> Plan:
         f"{accuracy:g} after {span(end)}, by trials over {span(time)}: {steps:.3g} steps in the fastest orbit of "
         f"{span(trials.fastest)}"
     )
-    return Plan(best.integrator, best.power, best.error, reason)
+    floor = sensitivity.floor if sensitivity is not None and time == end else None
+    return Plan(best.integrator, best.power, best.error, floor, reason)
 
 
 def _fitted(trials: Trials, method: Stepping, goal: Goal, best: Candidate | None) -> Candidate | None:
     """Return a method with the step that its error asks for; None where it costs more than the best so far."""
-    orbits = goal.time / trials.fastest
-    count = whole(max(FIRST * orbits, goal.time / goal.longest))
+    count = whole(max(FIRST * goal.time / trials.fastest, goal.time / goal.longest))
+    most = max(trials.most(goal.time), count)
     before: tuple[int, float] | None = None
-    while count <= MOST * orbits:
-        step = goal.time / count
-        price = cost(trials, method, step)
+    while count <= most:
+        price = cost(trials, method, goal.time / count)
         if best is not None and price >= best.cost:
             return None
-        motion = trials.motion(method, goal.time, count)
-        error = inf if motion is None else at_end(errors(motion, goal.reference), goal.end / goal.time)
+        error = _error(trials, method, goal, count)
         if error <= goal.error:
+            if before is not None:
+                count, error = _longer(trials, method, goal, before[0], (count, error))
             power = method.order if before is None else _power(before, (count, error), method.order)
-            return Candidate(_stepping(method, step), power, error, price)
+            step = goal.time / count
+            return Candidate(_stepping(method, step), power, error, cost(trials, method, step))
         if before is not None and before[1] < SMALL and error > before[1] / 2:  # round-off: it gets no better
             return None
         before = (count, error)
         count = whole(count * (1.5 if error == inf else min(2.0, max(1.1, (error / goal.error) ** (1 / method.order)))))
     return None
+
+
+def _error(trials: Trials, method: Stepping, goal: Goal, count: int) -> float:
+    """Return what the error of a method will be at the end of the run, by so many steps in the trial."""
+    motion = trials.motion(method, equal(goal.time, count))
+    return inf if motion is None else at_end(errors(motion, goal.reference), goal.end / goal.time)
+
+
+def _longer(trials: Trials, method: Stepping, goal: Goal, too_few: int, found: tuple[int, float]) -> tuple[int, float]:
+    """Return fewer steps than were found that are good enough too, with their error, where there are some."""
+    while found[0] > CLOSE * too_few and too_few < (count := whole((too_few * found[0]) ** 0.5)) < found[0]:
+        error = _error(trials, method, goal, count)
+        if error <= goal.error:
+            found = (count, error)
+        else:
+            too_few = count
+    return found
 
 
 def _stepping(method: Stepping, step: float) -> Stepping:
@@ -158,7 +190,7 @@ def _power(one: tuple[int, float], other: tuple[int, float], order: int) -> floa
     """Return with which power of the step an error falls between two numbers of steps."""
     if not (0 < other[1] < one[1] < inf):
         return float(order)
-    return min(order + 2.0, max(0.8 * order, log2(one[1] / other[1]) / log2(other[0] / one[0])))
+    return min(float(order), max(0.6 * order, log2(one[1] / other[1]) / log2(other[0] / one[0])))
 
 
 def cost(trials: Trials, integrator: Stepping, step: float) -> float:
@@ -179,26 +211,33 @@ def methods(trials: Trials) -> Iterator[Stepping]:
             yield KeplerSplitting(one, scheme)
 
 
-def estimate(trials: Trials, plan: Plan, end: Motion, step: float, time: float, accuracy: float) -> Estimate | None:
-    """Return the error at the end of a run, by another with steps twice as long; None where that one breaks off.
+def estimate(trials: Trials, plan: Plan, outcome: Outcome, accuracy: float) -> Estimate | None:
+    """Return the error at the end of a run, by another with steps of another length; None where that one breaks off.
+
+    They are compared at some of the saved rows, of which the last three count: at one instant an error may pass zero.
 
     Raises
     ------
     AccuracyError
         Where round-off leaves more than is asked.
     """
-    for longer in (2.0, 1.5, 1.2):
-        count = ceil(time / step / longer)
-        coarse = trials.motion(plan.integrator, time, count)
-        if coarse is not None:
+    if plan.floor is not None:
+        return Estimate(plan.error, plan.floor)
+    chosen = np.unique(np.linspace(0, len(outcome.time) - 1, ROWS + 1).round().astype(int))
+    times = outcome.time[chosen]
+    rows = Motion(*(array[chosen] for array in outcome.motion))
+    for longer in (2.0, 1.5, 1 / 1.5):
+        segments = between(times, outcome.step * longer)
+        other = trials.motion(plan.integrator, segments)
+        if other is not None:
             break
     else:
         return None
-    sensitivity = trials.sensitivity(plan.integrator, time, count, coarse)
+    sensitivity = trials.sensitivity(plan.integrator, segments, other)
     if sensitivity is not None:
-        sensitivity.refuse(accuracy, time)
+        sensitivity.refuse(accuracy, float(times[-1]))
     floor = 0.0 if sensitivity is None else sensitivity.floor
-    rows = min(ROWS, count)
-    longer = max(1.1, time / (rows * ceil(count / rows)) / step)
-    apart = float(errors(last_row(end), last_row(coarse))[0])
-    return Estimate(max(plan.error, apart / float(longer**plan.power - 1)), floor)
+    ratio = max(segment.step for segment in segments) / outcome.step
+    apart = float(errors(rows, other)[-LAST:].max())
+    known = abs(ratio**plan.power - 1) if apart < LARGE else 1.0  # of errors that follow the power
+    return Estimate(max(plan.error, apart / float(min(max(known, 0.1), MOST_KNOWN))), floor)

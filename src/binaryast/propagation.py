@@ -154,7 +154,8 @@ def _to_accuracy(
         if outcome.status != "completed":
             return _trajectory(system, state, plan.integrator, outcome, accuracy=asked, choice=plan.reason)
         try:
-            found = choosing.estimate(trials, plan, outcome.motion, outcome.step, end, asked)
+            with bar(end, progress) as trials.show:
+                found = choosing.estimate(trials, plan, outcome, asked)
         except KeyboardInterrupt:  # what has been computed is kept
             found = None
         if found is None or found.within(asked):

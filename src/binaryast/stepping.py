@@ -19,6 +19,7 @@ from binaryast.units import Floats, brief
 from binaryast.working.base import coinciding
 
 CHUNK_SECONDS = 0.1  # between two looks at the keyboard
+PARTS, LEVELS = 16, 3  # of a step in which bodies seem to touch: 16 parts, of which one in 16, and so on
 
 
 def turn_error(name: str, spin: float, integrator: Stepping, step: float) -> StepError:
@@ -49,7 +50,7 @@ class SteppedRun:
         self.times: list[Floats] = [np.zeros(1)]
         self.code = status.COMPLETED
         self.pressed: list[int] = []
-        self.raised = ""
+        self.raised, self.gone = "", 0.0  # gone: how far into the last step bodies touch [s]
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
         self._begin()
 
@@ -96,6 +97,8 @@ class SteppedRun:
             began = time.perf_counter()
             count = min(chunk, left)
             self.code = self._advance(segment, count, rows)
+            if self.code >= status.CONTACT:
+                self._look_closer(segment, rows)
             spent = time.perf_counter() - began
             self.wall_time += spent
             chunk = max(1, min(100 * count, int(count * CHUNK_SECONDS / max(spent, 1e-6))))
@@ -123,7 +126,47 @@ class SteppedRun:
         w.state[:] = end
         self._change(shares, segment.step)
 
+    def _look_closer(self, segment: Segment, rows: Floats) -> None:
+        """Repeat a step in which bodies seem to touch in short parts: the chord of its arc may, where the arc does not.
+
+        Where they do, the run ends with the part in which they touch; else the step is taken after all.
+        """
+        w, watch = self.working, self.watch.array.copy()
+        start = w.state.copy()
+        gone = self._by_parts(segment.step, LEVELS, watch)
+        if gone is None:
+            w.state[:] = start
+            self.code = self._call(segment.step, 1, segment.stride, rows, self.watch.array, np.zeros_like(w.surfaces))
+        else:
+            self.gone = gone
+            separation = float(w.measure(w.state, w.constants)[-1])
+            if separation < self.watch.array[loop.CLOSEST]:
+                self.closest_time = self.elapsed + self.watch.array[loop.STEPS] * segment.step + gone
+                self.watch.array[[loop.CLOSEST, loop.CLOSEST_STEP]] = separation, 0
+            self.watch.array[loop.ENERGY_ERROR : loop.CLOSEST] = watch[loop.ENERGY_ERROR : loop.CLOSEST]
+
+    def _by_parts(self, step: float, levels: int, watch: Floats) -> float | None:
+        """Follow a step in parts; return after what time bodies touch or it goes wrong, None where they do not."""
+        w, part, no_rows = self.working, step / PARTS, np.empty((0, self.working.row_size))
+        watch[loop.STEPS] = -2.0 * PARTS  # never a multiple of a stride that long
+        for k in range(PARTS):
+            self.code = self._call(part, 1, 10**9, no_rows, watch, w.surfaces)
+            if self.code < status.CONTACT and self.code != status.COMPLETED:
+                return k * part
+            if self.code >= status.CONTACT and levels == 1:
+                self._call(part, 1, 10**9, no_rows, watch, np.zeros_like(w.surfaces))
+                return (k + 1) * part
+            if self.code >= status.CONTACT:
+                gone = self._by_parts(part, levels - 1, watch)
+                if gone is not None:
+                    return k * part + gone
+        return None
+
     def _advance(self, segment: Segment, count: int, rows: Floats) -> int:
+        """Call the compiled loop for some steps of a segment."""
+        return self._call(segment.step, count, segment.stride, rows, self.watch.array, self.working.surfaces)
+
+    def _call(self, step: float, count: int, stride: int, rows: Floats, watch: Floats, surfaces: Floats) -> int:
         """Call the compiled loop; a potential of the user's that raises ends the run like any other trouble."""
         w = self.working
         try:
@@ -135,13 +178,13 @@ class SteppedRun:
                 w.attraction,
                 w.parameters,
                 w.constants,
-                w.surfaces,
+                surfaces,
                 w.state,
                 w.before,
-                self.watch.array,
-                segment.step,
+                watch,
+                step,
                 count,
-                segment.stride,
+                stride,
                 rows,
             )
         except Exception as error:  # whatever the user's function raises, in the middle of a step
@@ -157,13 +200,13 @@ class SteppedRun:
         saved = done // segment.stride
         self.rows[-1] = self.rows[-1][:saved]
         self.times.append(self.elapsed + np.arange(1, saved + 1) * (segment.stride * segment.step))
-        if done % segment.stride:
+        if done % segment.stride or self.gone:
             self.rows.append(self._row())
-            self.times.append(np.array([self.elapsed + done * segment.step]))
+            self.times.append(np.array([self.elapsed + done * segment.step + self.gone]))
         if watch[loop.CLOSEST_STEP]:
             self.closest_time = self.elapsed + watch[loop.CLOSEST_STEP] * segment.step
             watch[loop.CLOSEST_STEP] = 0
-        self.elapsed += done * segment.step
+        self.elapsed += done * segment.step + self.gone
         self.steps += done
 
     def outcome(self) -> Outcome:

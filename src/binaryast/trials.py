@@ -1,6 +1,6 @@
 """Short runs to be compared: how far they are apart, how errors and disturbances grow along them."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from math import ceil, inf, log2, pi, sqrt
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ import numpy as np
 from binaryast.errors import AccuracyError, StepError
 from binaryast.integrators import Splitting, Stepping
 from binaryast.outcome import Outcome
-from binaryast.schedule import Segment
+from binaryast.schedule import SLACK, Segment
 from binaryast.state import State
 from binaryast.stepping import SteppedRun
 from binaryast.system import Pair, System
@@ -21,8 +21,10 @@ MOST = 20_000  # steps in the fastest orbit
 DISTURBANCES = (1e-9, 1e-13)  # of velocities and spins, to see how errors grow; the other where the first grows large
 LARGE = 1e-2  # of a difference: it grows no more in proportion
 ROUNDING = 1e-15  # as if the start had been wrong by so much
+LEAST = 5000  # of that bound, for runs of less than an orbit
 SMALL = 1e-9  # an error that does not fall any more below this is round-off
 REFERENCE = Splitting(quantity(1.0, "s"), "ss10")
+SHORT_STEPS = Splitting(quantity(1.0, "s"), "rkn6a")  # to see whether bodies touch
 
 
 def rates(system: System, state: State) -> Iterator[tuple[Pair, float]]:
@@ -48,14 +50,30 @@ def errors(one: Motion, other: Motion) -> Floats:
     return np.asarray(np.maximum(position.max(axis=1), angle.max(axis=1)))
 
 
-def last_row(motion: Motion) -> Motion:
-    """Return the last row of a motion alone."""
-    return Motion(*(array[-1:] for array in motion))
-
-
 def whole(count: float) -> int:
     """Return a number of steps of a trial, the same in each of its rows."""
-    return ROWS * ceil(count / ROWS)
+    return ROWS * max(1, ceil(count / ROWS))
+
+
+def equal(time: float, count: float) -> list[Segment]:
+    """Return at least so many equal steps in a time, with `ROWS` rows."""
+    steps = whole(count)
+    return [Segment(time / steps, steps, steps // ROWS)]
+
+
+def between(times: Floats, step: float) -> list[Segment]:
+    """Return segments from each of some times to the next, in equal steps up to a length [s], with a row at each."""
+    counts = [max(1, ceil(apart / step * (1 - SLACK))) for apart in np.diff(times).tolist()]
+    return [Segment(apart / count, count, count) for apart, count in zip(np.diff(times).tolist(), counts, strict=True)]
+
+
+def row_ends(segments: list[Segment]) -> Floats:
+    """Return the times of the rows of segments, the start first."""
+    times = [0.0]
+    for segment in segments:
+        begin = times[-1]
+        times += [begin + k * segment.stride * segment.step for k in range(1, segment.steps // segment.stride + 1)]
+    return np.array(times)
 
 
 def at_end(rows: Floats, longer: float) -> float:
@@ -99,76 +117,89 @@ class Sensitivity(NamedTuple):
         if self.floor <= accuracy:
             held = self.times[-1] * (accuracy / self.floor) ** (1 / growth)
         else:
-            grown = np.log(np.maximum.accumulate(np.maximum(self.factors, 1.0)))
-            held = float(np.interp(np.log(accuracy / ROUNDING), grown, self.times))
+            known = np.isfinite(self.factors)
+            grown = np.log(np.maximum.accumulate(np.maximum(self.factors[known], 1.0)))
+            held = float(np.interp(np.log(accuracy / ROUNDING), grown, self.times[known]))
         horizon = f"it can be had for the first {span(held)}" if held > 0 else "it cannot be had for any time"
-        raise AccuracyError(
-            f"accuracy: {accuracy:g} after {span(end)} is below what round-off leaves, about {floor:.1g}, for a "
-            f"disturbance of the start grows {floor / ROUNDING:.2g} times; {horizon}"
-        )
+        if floor < inf:
+            left = f"is below what round-off leaves, about {floor:.1g}"
+            why = f"a disturbance of the start grows {floor / ROUNDING:.2g} times"
+        else:
+            left, why = "is lost to round-off", "a disturbance of the start grows until nothing of the motion is left"
+        raise AccuracyError(f"accuracy: {accuracy:g} after {span(end)} {left}, for {why}; {horizon}")
 
 
 class Trials:
-    """A system and its start, of which runs are made to compare them."""
+    """A system and its start, of which runs are made to compare them.
+
+    Attributes
+    ----------
+    fastest, slowest : float
+        The shortest and longest periods of pairs, as they are at the start [s].
+    show : callable
+        Takes how far a run is [s].
+    """
 
     def __init__(self, system: System, state: State) -> None:
         self.system, self.state = system, state
         found = [rate for _, rate in rates(system, state)]
-        self.fastest, self.slowest = (2 * pi / rate for rate in (max(found), min(found)))  # periods
+        self.fastest, self.slowest = (2 * pi / rate for rate in (max(found), min(found)))
+        self.show: Callable[[float], None] = lambda _: None
 
-    def outcome(self, integrator: Stepping, time: float, count: int, state: State | None = None) -> Outcome:
-        """Return a run of so many equal steps, up to a multiple of its rows: `ROWS`, or as many as there are steps."""
-        rows = min(ROWS, count)
-        stride = ceil(count / rows)
-        segment = Segment(time / (stride * rows), stride * rows, stride)
-        run = SteppedRun(self.system, state or self.state, integrator, [segment])
-        run.go(lambda _: None)
-        outcome = run.outcome()
-        if outcome.status == "interrupted":
+    def most(self, time: float) -> float:
+        """Return how many steps a run may have."""
+        return max(MOST * time / self.fastest, LEAST)
+
+    def outcome(self, integrator: Stepping, segments: list[Segment], state: State | None = None) -> Outcome:
+        """Return a run by segments of equal steps, of this start or another."""
+        run = SteppedRun(self.system, state or self.state, integrator, segments)
+        run.go(self.show)
+        if run.pressed:
             raise KeyboardInterrupt
-        return outcome
+        return run.outcome()
 
-    def motion(self, integrator: Stepping, time: float, count: int, state: State | None = None) -> Motion | None:
+    def motion(self, integrator: Stepping, segments: list[Segment], state: State | None = None) -> Motion | None:
         """Return the rows, None where the run does not come to its end."""
         try:
-            outcome = self.outcome(integrator, time, count, state)
+            outcome = self.outcome(integrator, segments, state)
         except StepError:
             return None
         return outcome.motion if outcome.status == "completed" else None
 
     def free_time(self, time: float) -> float:
-        """Return a time, or most of the time until two bodies touch, where they do before: also with shorter steps."""
-        for steps in (12, 50, 200):
-            outcome = self.outcome(REFERENCE, time, whole(steps * time / self.fastest))
-            if outcome.status != "contact":
-                return time
-        return 0.9 * float(outcome.time[-1])
+        """Return a time, or most of the time until two bodies touch, where they do before."""
+        outcome = self.outcome(SHORT_STEPS, equal(time, 400 * time / self.fastest))
+        return 0.9 * float(outcome.time[-1]) if outcome.status == "contact" else time
 
-    def reference(self, time: float, wanted: float) -> tuple[Motion | None, int, float]:
+    def reference(self, time: float, wanted: float) -> tuple[Motion | None, list[Segment], float]:
         """Return rows that are right to a fraction of what is wanted, or to round-off, the steps, and how right."""
         count = whole(12 * time / self.fastest)
-        best, last, stalls = None, inf, 0
-        while count < MOST * time / self.fastest:
-            finer = self.motion(REFERENCE, time, count)
-            if finer is not None and best is not None:
-                apart = float(errors(best, finer).max())
+        segments = equal(time, count)
+        best, last, stalls = self.motion(REFERENCE, segments), inf, 0
+        while count < self.most(time):
+            count = whole(1.5 * count)
+            before, segments = best, equal(time, count)
+            best = self.motion(REFERENCE, segments)
+            if best is not None and before is not None:
+                apart = float(errors(before, best).max())
                 stalls = stalls + 1 if apart > last / 2 else 0
                 if apart < wanted / 30 or (stalls and last < SMALL) or stalls == 3:  # shorter steps do not help
-                    return finer, count, apart
+                    return best, segments, apart
                 last = apart
-            best, count = finer, whole(1.5 * count)
-        return best, count, last
+        return best, segments, last
 
-    def sensitivity(self, integrator: Stepping, time: float, count: int, undisturbed: Motion) -> Sensitivity | None:
+    def sensitivity(self, integrator: Stepping, segments: list[Segment], undisturbed: Motion) -> Sensitivity | None:
         """Return how a disturbance of velocities and spins grows along a run."""
+        times = row_ends(segments)
         for disturbance in DISTURBANCES:
             more = 1 + disturbance
             place, attitude = self.state.position, self.state.attitude
             disturbed = State(place, self.state.velocity * more, attitude, self.state.spin * more)
-            motion = self.motion(integrator, time, count, disturbed)
+            motion = self.motion(integrator, segments, disturbed)
             if motion is None:
                 return None
             apart = errors(motion, undisturbed)
             if apart.max() < LARGE:
-                break
-        return Sensitivity(np.linspace(0, time, len(apart)), apart / disturbance)
+                return Sensitivity(times, apart / disturbance)
+        factors = np.where(np.maximum.accumulate(apart) < LARGE, apart / disturbance, inf)  # it is lost in the end
+        return Sensitivity(times, factors)

@@ -70,8 +70,8 @@ def advance(
 
     The number of steps done is kept in ``watch``; after every ``stride``-th of them the start of the state goes into
     the next of ``rows``, the row of step k being k/stride - 1. Whether surfaces touch is looked at all along the way of
-    each step. ``before`` keeps as much of the state before a step as a step in vain may have changed, and
-    at least the positions. Returns a status; the state then is the last good one, or the first with contact.
+    each step. ``before`` keeps the state before a step. Returns a status; a step that goes wrong or in which bodies
+    seem to touch is not taken: the state is that before it.
     """
     for _ in range(count):
         for i in range(before.size):
@@ -81,6 +81,11 @@ def advance(
             for i in range(before.size):
                 state[i] = before[i]
             return status
+        pair = touching(state, surfaces, before)
+        if pair > 0:
+            for i in range(before.size):
+                state[i] = before[i]
+            return CONTACT + pair - 1
         energy, l1, l2, l3, p1, p2, p3, rotation_error, separation = measure(state, constants)
         watch[STEPS] += 1.0
         watch[ENERGY_ERROR] = max(watch[ENERGY_ERROR], abs(energy - watch[ENERGY]))
@@ -101,7 +106,4 @@ def advance(
             row = done // stride - 1
             for i in range(rows.shape[1]):
                 rows[row, i] = state[i]
-        pair = touching(state, surfaces, before)
-        if pair > 0:
-            return CONTACT + pair - 1
     return COMPLETED

@@ -41,7 +41,7 @@ class Working(ABC):
     state : ndarray
         The working state: what a step changes, and a checkpoint.
     before : ndarray
-        Room for as much of the state as a step in vain may spoil.
+        Room for the state before a step.
     constants, surfaces, parameters : ndarray
         Masses and moments; what may touch; what the potentials need.
     attraction : object

@@ -35,7 +35,7 @@ class WorkingPair(Working):
         self.constants[layout.REDUCED_MASS] = system.reduced_mass
         self.constants[layout.GM] = sum(body.si.gm for body in system.bodies)
         self.state = np.zeros(layout.STATE_SIZE)
-        self.before = np.zeros(3)  # the step itself spoils nothing
+        self.before = self.state.copy()
         position, velocity, attitude, spin = state.si
         self.state[layout.POSITION : layout.POSITION + 3] = position[1] - position[0]
         self.state[layout.VELOCITY : layout.VELOCITY + 3] = velocity[1] - velocity[0]
