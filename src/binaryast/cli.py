@@ -120,7 +120,7 @@ def parser() -> argparse.ArgumentParser:
     running.add_argument(
         "--accuracy", type=float, metavar="X", help="error at the end, of positions over the distance and angles"
     )
-    running.add_argument("--integrator", choices=INTEGRATORS, help="method (default: LGVI)")
+    running.add_argument("--integrator", choices=INTEGRATORS, help="method, instead of an accuracy (default: LGVI)")
     running.add_argument("--order", type=int, choices=(2, 4, 6, 8, 10), help="order of LGVI (default: 2)")
     running.add_argument("--scheme", metavar="NAME", help="scheme, of those of binaryast list --integrators")
     running.add_argument("--frame", choices=("relative", "inertial"), help="whose variables are stepped")

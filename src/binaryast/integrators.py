@@ -161,7 +161,8 @@ class LGVI(Stepping):
         For a pair both give the same motion; the relative frame is the default, for it is faster.
     scheme : str, optional
         The composition by its name, in the place of the order: ``"suzuki4"``, the default at order 4; ``"yoshida4"``,
-        the paper's, with 3 evaluations but an error some fifty times larger; ``"kl6"``, ``"kl8"``, ``"ss10"``.
+        the paper's, with 3 evaluations but, step for step, an error some fifty times larger; ``"kl6"``, ``"kl8"``,
+        ``"ss10"``.
 
     Raises
     ------

@@ -158,6 +158,9 @@ def _to_accuracy(
                 found = choosing.estimate(trials, plan, outcome, asked)
         except KeyboardInterrupt:  # what has been computed is kept
             found = None
+        if found is None:
+            text = "the error at the end is not known: runs with other steps did not come so far, or were stopped"
+            warnings.warn(text, StepWarning, stacklevel=3)
         if found is None or found.within(asked):
             error = None if found is None else found.error
             return _trajectory(

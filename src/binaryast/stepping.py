@@ -111,7 +111,8 @@ class SteppedRun:
     def _change(self, shares: Floats, step: float) -> None:
         """Change the variables of the working state, or change them back."""
         w = self.working
-        self.kernel(w.state, w.constants, np.ascontiguousarray(shares), w.attraction, w.parameters, step)
+        code = self.kernel(w.state, w.constants, np.ascontiguousarray(shares), w.attraction, w.parameters, step)
+        self.code = self.code or code
 
     def _change_back(self, shares: Floats, segment: Segment) -> None:
         """Change the variables of the rows of a segment and of the state at its end back, and watch their energy."""

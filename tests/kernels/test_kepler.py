@@ -59,6 +59,18 @@ def test_a_circle(turns: float) -> None:
     )
 
 
+@pytest.mark.parametrize("e", [0.1, 0.6, 0.9])
+def test_many_revolutions(e: float) -> None:
+    """Whole ones lead nowhere, but for the rounding of the time."""
+    x, v, _ = orbit(e, 1.1)
+    period = 2 * np.pi * np.sqrt(1.7**3 / GM)
+    for turns in (1, 3, 1000):
+        y, w = after(x, v, (turns + 0.3) * period)
+        z, _ = after(x, v, 0.3 * period)
+        assert np.linalg.norm(y - z) < 3e-14 * (turns + 1) / (1 - e)
+        assert w @ w / 2 - GM / np.linalg.norm(y) == pytest.approx(-GM / (2 * 1.7), rel=3e-14 / (1 - e))
+
+
 def test_a_parabola() -> None:
     """Barker's equation."""
     q = 0.8

@@ -5,7 +5,7 @@ beta, h = r s + eta G2 + zeta G3 is Kepler's equation (E. L. Stiefel, G. Scheife
 Mechanics, 1971).
 """
 
-from math import inf, nan, sqrt
+from math import floor, inf, nan, pi, sqrt
 
 from binaryast.kernels.jit import Vector, jit
 from binaryast.kernels.so3 import dot
@@ -49,6 +49,9 @@ def drift(x: Vector, v: Vector, gm: float, h: float) -> tuple[Vector, Vector]:
     eta = sign * dot(x, v)
     beta = 2.0 * gm / r - dot(v, v)
     zeta = gm - beta * r
+    if beta > 0.0 and beta * beta * beta * h * h > 40.0 * gm * gm:  # about a revolution: whole ones lead nowhere
+        period = 2.0 * pi * gm / (beta * sqrt(beta))
+        h -= floor(h / period) * period
     u, k = h / r, 0.5 * eta / r
     s = u * (1.0 + u * (-k + u * (2.0 * k * k - zeta / (6.0 * r))))  # the reversed series of Kepler's equation
     if beta > 0.0 and beta * beta * beta * h * h > gm * gm:  # by more than a radian of mean anomaly
