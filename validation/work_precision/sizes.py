@@ -18,12 +18,12 @@ from validation import drawing
 from validation.benchmark import swarm
 from validation.steps import take_steps
 from validation.systems import wobbling_pair
-from validation.work_precision.problems import cloud, clouds
+from validation.work_precision.problems import as_clouds, clouds
 from validation.work_precision.tables import rows
 
 ROUNDS = 5
 SECONDS = 0.04  # of one timing
-OF_PAIRS, OF_BODIES = ba.KeplerSplitting(1 * u.h, scheme="aba104"), ba.Splitting(1 * u.h)
+OF_PAIRS, OF_BODIES = ba.KeplerSplitting(1 * u.h, scheme="aba104"), ba.Splitting(1 * u.h, frame="inertial")
 DEGREES = (2, 4, 6, 8, 10, 12)
 POINTS = (2, 4, 8, 16, 32, 64, 128, 256, 512, 1000)  # of each body
 BODIES = (2, 3, 5, 10, 20)
@@ -64,13 +64,7 @@ def stage_timer(system: ba.System, state: ba.State, integrator: Stepping, step: 
 def of_degrees(*, even: bool) -> dict[int, Callable[[], float]]:
     """Return timers of the multipole gravity of ellipsoids, or of bodies with all moments."""
     pair, state = wobbling_pair()
-    bodies = list(pair.bodies)
-    if not even:  # points in a spiral are not symmetric
-        axes = ((425.5, 424.5, 310.0), (89.75, 84.7, 57.6))
-        bodies = [
-            ba.RigidBody(body.name, cloud(axis, 31), mass=body.mass)
-            for body, axis in zip(pair.bodies, axes, strict=True)
-        ]
+    bodies = list(pair.bodies) if even else as_clouds(pair, 31)  # points in a spiral are not symmetric
     systems = {degree: ba.System(bodies, gravity=ba.Multipole(degree)) for degree in DEGREES}
     return {degree: stage_timer(system, state, OF_PAIRS, 3600.0) for degree, system in systems.items()}
 

@@ -33,9 +33,10 @@ def potential(
         for j in range(n2):
             dx, dy, dz = px - x2[j], py - y2[j], pz - z2[j]
             square = dx * dx + dy * dy + dz * dz
-            k = m2[j] / sqrt(square)
+            inverse = 1.0 / square  # one division: they and the root are what a pair costs
+            k = m2[j] * sqrt(inverse)
             u += k
-            k /= square
+            k *= inverse
             fx += k * dx
             fy += k * dy
             fz += k * dz
