@@ -61,6 +61,8 @@ def test_tables_say_what_is_reached_and_what_is_missed() -> None:
     assert "| degree-2 | 1e-10 | position | - | 1, missed |" in text
     assert text.count("missed") == 2
     assert "| ours | quick | **1** |" in text
+    assert "| degree-2 | position | heyoka, series | 112 | 44.7 |" in text
+    assert f"1 / {series * 1e3:.3g} ({series * 1e3:.3g}) |" in tables.readme([result])[2]
     assert figures.diagram(result).axes[0].lines[0].get_xdata()[0] == 1e-4
 
 

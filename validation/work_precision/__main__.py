@@ -1,6 +1,7 @@
 """Run the work-precision benchmark: ``python -m validation.work_precision [PROBLEM ...] [--quick] [-o FOLDER]``."""
 
 import argparse
+import json
 import os
 import sys
 import tempfile
@@ -60,6 +61,7 @@ def main() -> None:
     parser.add_argument(
         "problems", nargs="*", metavar="PROBLEM", help=f"of {', '.join(BY_NAME)}, and sizes; all by default"
     )
+    parser.add_argument("--readme", action="store_true", help="print one small table in the place of all")
     parser.add_argument("--quick", action="store_true", help="two problems with few settings, in two minutes")
     parser.add_argument(
         "-o", dest="folder", type=Path, default=Path("work-precision"), help="where figures and tables go"
@@ -86,7 +88,10 @@ def main() -> None:
         figures_of_sizes.savefig(options.folder / "sizes.png", dpi=130)
         text += sizes.report(found)
     (options.folder / "work-precision.md").write_text(text, encoding="utf-8")
-    print(text)
+    (options.folder / "points.json").write_text(
+        json.dumps({r.problem.name: r.points for r in results}), encoding="utf-8"
+    )
+    print("\n".join(tables.readme(results)) if options.readme else text)
     print(f"{time.monotonic() - began:.0f} s; figures are in {options.folder}", file=sys.stderr)
 
 

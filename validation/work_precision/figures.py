@@ -6,8 +6,7 @@ from matplotlib.figure import Figure
 
 from validation.drawing import COLOURS, MARKERS
 from validation.work_precision.measure import Point, front
-from validation.work_precision.problems import EVERYTHING, POSITION
-from validation.work_precision.tables import Result
+from validation.work_precision.tables import Result, kinds_of
 
 FAMILIES = {"ours": 0, "heyoka": 1, "REBOUND": 2, "SciPy": 3}
 
@@ -28,7 +27,7 @@ def panel(ax: object, points: Sequence[Point], kind: str) -> None:
 
 def diagram(result: Result) -> Figure:
     """Return the figure of one problem."""
-    kinds = (POSITION, EVERYTHING) if result.problem.has_attitudes else (POSITION,)
+    kinds = kinds_of(result.problem)
     figure = Figure(figsize=(4.4 * len(kinds) + 2.8, 4.2), layout="constrained")
     panels = figure.subplots(1, len(kinds), sharey=True, squeeze=False)[0]
     for ax, kind in zip(panels, kinds, strict=True):

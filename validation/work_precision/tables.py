@@ -21,6 +21,11 @@ class Result(NamedTuple):
     compiling: list[str]
 
 
+def kinds_of(problem: Problem) -> tuple[str, ...]:
+    """Return the kinds of error of a problem."""
+    return (POSITION, EVERYTHING) if problem.has_attitudes else (POSITION,)
+
+
 def milliseconds(seconds: float) -> str:
     """Return a time in ms with three digits."""
     return f"{seconds * 1e3:.3g}"
@@ -53,9 +58,8 @@ def ratios(result: Result, *, call: bool = False) -> list[tuple[str, float, floa
     """Return kind, error, ratio of heyoka's time to ours, the ratio asked for, and which methods they are."""
     ours = [point for point in result.points if point.family == "ours"]
     theirs = [point for point in result.points if point.family == "heyoka"]
-    kinds = (POSITION, EVERYTHING) if result.problem.has_attitudes else (POSITION,)
     found = []
-    for kind in kinds:
+    for kind in kinds_of(result.problem):
         for target in TARGETS:
             one, two = best(target, ours, kind, call=call), best(target, theirs, kind)
             ratio = two.seconds / one.seconds if one and two else None
@@ -80,6 +84,35 @@ def ratio_table(results: Sequence[Result]) -> list[str]:
     return rows(lines)
 
 
+def by_mode(results: Sequence[Result]) -> list[str]:
+    """Return the time of each of heyoka's modes, of REBOUND's and SciPy's methods, over our best, to each error."""
+    lines = [["problem", "error of", "over ours", *(f"{target:g}" for target in TARGETS)]]
+    for result in results:
+        ours = [point for point in result.points if point.family == "ours"]
+        for kind in kinds_of(result.problem):
+            for family, method in dict.fromkeys((p.family, p.method) for p in result.points if p.family != "ours"):
+                of_method = [p for p in result.points if (p.family, p.method) == (family, method)]
+                pairs = [(best(target, ours, kind), best(target, of_method, kind)) for target in TARGETS]
+                cells = [f"{two.seconds / one.seconds:.3g}" if one and two else "-" for one, two in pairs]
+                lines.append([result.problem.name, kind, f"{family}, {method}", *cells])
+    return rows(lines)
+
+
+def readme(results: Sequence[Result]) -> list[str]:
+    """Return our best and heyoka's best time [ms], and their ratio, in one small table."""
+    lines = [["ms, ours / heyoka (ratio), to an error of", *(f"{target:g}" for target in TARGETS)]]
+    for result in results:
+        for kind in kinds_of(result.problem):
+            cells = []
+            for target in TARGETS:
+                found = [best(target, [p for p in result.points if p.family == f], kind) for f in ("ours", "heyoka")]
+                texts = [milliseconds(one.seconds) if one else "-" for one in found]
+                ratio = f" ({found[1].seconds / found[0].seconds:.3g})" if found[0] and found[1] else ""
+                cells.append(" / ".join(texts) + ratio)
+            lines.append([f"{result.problem.title}: {kind}", *cells])
+    return rows(lines)
+
+
 def points_table(result: Result) -> list[str]:
     """Return every measured point."""
     lines = [["family", "method", "setting", "ms", "ms of the call", "error of position", "error of everything"]]
@@ -91,11 +124,12 @@ def points_table(result: Result) -> list[str]:
 
 def report(results: Sequence[Result]) -> str:
     """Return everything in Markdown."""
-    text = ["## heyoka's CPU time over ours", "", *ratio_table(results)]
+    text = ["## heyoka's CPU time over ours, the best of both", "", *ratio_table(results)]
+    text += ["", "## Each method of others over our best", "", *by_mode(results)]
     for result in results:
         text += ["", f"## {result.problem.name}: {result.problem.title}", ""]
         text += [f"Reference: 80-bit Taylor series at 1e-19, {result.reference:.1e} from one at 1e-17.", ""]
-        for kind in (POSITION, EVERYTHING) if result.problem.has_attitudes else (POSITION,):
+        for kind in kinds_of(result.problem):
             text += [f"CPU time of the steps [ms] to an error of {kind}:", "", *times(result, kind), ""]
         text += [f"- {line}" for line in result.compiling]
         text += ["", "<details><summary>every point</summary>", "", *points_table(result), "", "</details>"]
