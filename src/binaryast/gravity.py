@@ -240,6 +240,13 @@ class PointPairs(Gravity):
 
         return potential
 
+    def potential_for(self, parameters: Floats) -> Callable[..., Any]:
+        """Return the compiled pair potential for these bodies: of eight points at a time, where there are so many."""
+        from binaryast.kernels.mutual import point_octets, points
+
+        fast: Callable[..., Any] = point_octets.potential
+        return fast if parameters[0] >= point_octets.LANES else points.potential
+
     def parameters(self, secondary: RigidBody, primary: RigidBody) -> Floats:
         """Return the counts, and the coordinates and masses of the points of both bodies."""
         (x1, f1), (x2, f2) = _points(secondary), _points(primary)
