@@ -80,22 +80,26 @@ def kepler(scheme: str, corrector: bool = False) -> Callable[[Any], Any]:
     return lambda step: ba.KeplerSplitting(step, scheme=scheme, corrector=corrector)
 
 
-def of_pairs(unit: float = HOUR, *, bound: bool = True) -> tuple[Sweep, ...]:
-    """Return our methods for pairs with the orbit's twelfth, about an hour for Didymos, as the unit of their steps."""
+def of_pairs(unit: float = HOUR, *, bound: bool = True, finer: float = 1.0) -> tuple[Sweep, ...]:
+    """Return our methods for pairs with the orbit's twelfth, about an hour for Didymos, as the unit of their steps.
+
+    The shortest steps are ``finer`` for uneven bodies, whose spin they have to resolve.
+    """
+    short = unit / finer
     orbit = (
-        Sweep("Kepler splitting ABA(10,4)", kepler("aba104"), steps(3.5 * unit, 0.1 * unit, 13)),
-        Sweep("the same, corrected", kepler("aba104", True), steps(3.5 * unit, 0.1 * unit, 13)),
-        Sweep("Kepler splitting ABA(8,6,4)", kepler("aba864"), steps(2.5 * unit, 0.1 * unit, 12)),
-        Sweep("Kepler splitting ABA(10,6,4)", kepler("aba1064"), steps(3.5 * unit, 0.12 * unit, 12)),
+        Sweep("Kepler splitting ABA(10,4)", kepler("aba104"), steps(3.5 * unit, 0.1 * short, 13)),
+        Sweep("the same, corrected", kepler("aba104", True), steps(3.5 * unit, 0.1 * short, 13)),
+        Sweep("Kepler splitting ABA(8,6,4)", kepler("aba864"), steps(2.5 * unit, 0.1 * short, 12)),
+        Sweep("Kepler splitting ABA(10,6,4)", kepler("aba1064"), steps(3.5 * unit, 0.12 * short, 12)),
     )
     return (
         *(orbit if bound else ()),
-        Sweep("splitting RKN6a", splitting("rkn6a"), steps(3 * unit, 0.2 * unit, 10)),
-        Sweep("splitting SS10", splitting("ss10"), steps(5 * unit, 0.5 * unit, 11)),
+        Sweep("splitting RKN6a", splitting("rkn6a"), steps(3 * short, 0.2 * short, 10)),
+        Sweep("splitting SS10", splitting("ss10"), steps(5 * short, 0.35 * short, 12)),
         Sweep("splitting RKN4", splitting("rkn4"), steps(0.7 * unit, 0.1 * unit, 5)),
         Sweep("LGVI, order 2", lgvi(2), steps(0.08 * unit, 0.01 * unit, 3)),
         Sweep("LGVI, order 8", lgvi(8), steps(0.4 * unit, 0.08 * unit, 6)),
-        Sweep("LGVI, order 10", lgvi(10), steps(0.7 * unit, 0.15 * unit, 7)),
+        Sweep("LGVI, order 10", lgvi(10), steps(0.7 * unit, 0.15 * short, 7)),
     )
 
 
@@ -180,11 +184,12 @@ PROBLEMS = (
     ),
     Problem(
         "pairs-64", "8 x 8 points like Didymos and Dimorphos, 100 d",
-        clouds(8), 100 * DAY, of_pairs(), OF_CLOUDS, {},
+        clouds(8), 100 * DAY, of_pairs(finer=2.5), OF_CLOUDS, {},
     ),
     Problem(
         "pairs-256", "16 x 16 points like Didymos and Dimorphos, 100 d",
-        clouds(16), 100 * DAY, of_pairs(), OF_CLOUDS, {POSITION: {1e-4: 60.0, 1e-6: 40.0, 1e-8: 25.0, 1e-10: 15.0}},
+        clouds(16), 100 * DAY, of_pairs(finer=2.5), OF_CLOUDS,
+        {POSITION: {1e-4: 60.0, 1e-6: 40.0, 1e-8: 25.0, 1e-10: 15.0}},
     ),
     Problem(
         "eccentric", "the ellipsoids on a wide orbit of e = 0.3, degree 4, 100 d",

@@ -114,5 +114,7 @@ def figure(found: Sequence[Series]) -> Figure:
         label = f"{series.title}, exponent {series.exponent:.2f}"
         drawing.curve(ax, series.sizes, series.microseconds, label, k)
         ax.set_xlabel(series.size)
+        if len(series.sizes) < 8:
+            drawing.ticks(ax, series.sizes)
         drawing.legend(ax)
     return result
