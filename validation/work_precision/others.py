@@ -13,7 +13,7 @@ from validation.work_precision.measure import Candidate, Run
 from validation.work_precision.problems import Problem
 from validation.work_precision.taylor_runs import COMPACT, equations
 
-STEPS = {"leapfrog": (4.0, 400.0, 5), "whfast": (10.0, 800.0, 5), "saba": (40.0, 4000.0, 6)}
+STEPS = {"leapfrog": (4.0, 400.0, 5), "whfast": (10.0, 800.0, 5), "saba": (400.0, 20000.0, 7)}
 TITLES = {"leapfrog": "leapfrog", "whfast": "WHFast", "saba": "SABA(10,6,4)"}
 
 
@@ -26,7 +26,7 @@ def rebound_candidates(problem: Problem) -> list[Candidate]:
             number = int(np.ceil(problem.duration / step))
             go = rebound_run(system, state, problem.duration, name, number)
             result.append(Candidate("REBOUND", TITLES[name], f"{problem.duration / number:.4g} s", go))
-    for epsilon in (1e-5, 1e-7, 1e-9):
+    for epsilon in (1e-1, 1e-3, 1e-5, 1e-7, 1e-9):
         go = rebound_run(system, state, problem.duration, "ias15", epsilon=epsilon)
         result.append(Candidate("REBOUND", "IAS15", f"{epsilon:g}", go))
     return result

@@ -164,7 +164,8 @@ def dumbbells() -> tuple[ba.System, ba.State]:
 
 
 TOLERANCES = {"default": (1e-7, 1e-8, 1e-9, 1e-11, 1e-13, 1e-15), "compact": (1e-7, 1e-9, 1e-12, 1e-15)}
-OF_CLOUDS = {"default": (1e-7, 1e-8, 1e-9, 1e-11, 1e-13), "compact": (1e-7, 1e-8, 1e-9, 1e-11, 1e-13, 1e-15)}
+OF_CLOUDS = {"default": (1e-7, 1e-8, 1e-9, 1e-11, 1e-14), "compact": (1e-7, 1e-8, 1e-9, 1e-11, 1e-13, 1e-15)}
+OF_POINTS = {"default": (1e-4, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13), "compact": (1e-5, 1e-9, 1e-13)}
 OF_DEGREE_8 = {"default": (1e-7, 1e-8, 1e-9, 1e-11, 1e-13), "compact": (1e-7, 1e-9, 1e-12, 1e-15)}
 EVERYTHING, POSITION = "everything", "position"
 
@@ -207,7 +208,7 @@ PROBLEMS = (
             Sweep("splitting RKN6a", splitting("rkn6a"), steps(15000.0, 800.0, 9)),
             Sweep("splitting SS10", splitting("ss10"), steps(30000.0, 2500.0, 9)),
         ),
-        TOLERANCES, {},
+        OF_POINTS, {},
     ),
 )  # fmt: skip
 BY_NAME = {problem.name: problem for problem in PROBLEMS}
