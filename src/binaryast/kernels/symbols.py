@@ -1,8 +1,8 @@
 """Numbers that stand for instructions: a formula that Python runs on them is written out as straight-line code.
 
 With a `Symbol` in the place of a float, loops are unrolled, what is known becomes a constant, and what is multiplied by
-zero is left out. A symbol may also stand for two numbers side by side, on which the processor works at once. This is
-how ``mutual/multipole_kernels.py`` gets a kernel of each degree from one text of the mathematics, without files of
+zero is left out. A symbol may also stand for several numbers side by side, on which the processor works at once. This
+is how ``mutual/multipole_kernels.py`` gets a kernel of each degree from one text of the mathematics, without files of
 generated source, and soon, in half a second at degree 4, several at 16: numba's own analysis, which would take longest,
 does not see the instructions.
 """
@@ -21,7 +21,7 @@ Number: TypeAlias = "Symbol | float"
 
 
 class Symbol:
-    """A number, or a pair of numbers, that is known only when the code runs."""
+    """A number, or several side by side, that is known only when the code runs."""
 
     def __init__(self, builder: Any, value: Any) -> None:
         self.builder, self.value = builder, value
@@ -56,8 +56,8 @@ class Symbol:
         return self._result("fdiv", other, self)
 
     def _result(self, instruction: str, one: Number, two: Number) -> "Symbol":
-        """Return the result of an instruction; beside a pair, a single number counts twice."""
-        kind = PAIR if PAIR in (_kind(one), _kind(two)) else FLOAT
+        """Return the result of an instruction; beside several numbers, a single one counts for each."""
+        kind = _widest(one, two)
         operands = (as_value(self.builder, number, kind) for number in (one, two))
         return Symbol(self.builder, getattr(self.builder, instruction)(*operands, flags=FUSED))
 
@@ -104,7 +104,7 @@ class SymbolLanes:
 
     def where_larger(self, a: Any, b: Any, one: Any, two: Any) -> Any:
         """Return ``one`` where a > b, ``two`` elsewhere."""
-        kind = PAIR if PAIR in map(_kind, (a, b, one, two)) else FLOAT
+        kind = _widest(a, b, one, two)
         a, b, one, two = (as_value(self.builder, number, kind) for number in (a, b, one, two))
         return Symbol(self.builder, self.builder.select(self.builder.fcmp_ordered(">", a, b), one, two))
 
@@ -152,15 +152,25 @@ def _flat(result: Any) -> list[Number]:
 
 
 def as_value(builder: Any, number: Number, kind: Any) -> Any:
-    """Return a number as a value of LLVM's; twice, side by side, where a pair is wanted."""
+    """Return a number as a value of LLVM's; as often as there are lanes, where several side by side are wanted."""
+    several = isinstance(kind, ir.VectorType)
     if not isinstance(number, Symbol):
         constant = ir.Constant(FLOAT, float(number))
-        return constant if kind is FLOAT else ir.Constant(PAIR, [constant, constant])
-    return number.value if _kind(number) is kind else SymbolLanes(builder).pair(number, number).value
+        return ir.Constant(kind, [constant] * kind.count) if several else constant
+    if _kind(number) == kind:
+        return number.value
+    lanes = ir.Constant(ir.VectorType(ir.IntType(32), kind.count), [_integer(0)] * kind.count)
+    first = builder.insert_element(ir.Constant(kind, ir.Undefined), number.value, _integer(0))
+    return builder.shuffle_vector(first, ir.Constant(kind, ir.Undefined), lanes)
 
 
 def _kind(number: Number) -> Any:
-    return PAIR if isinstance(number, Symbol) and number.value.type == PAIR else FLOAT
+    return number.value.type if isinstance(number, Symbol) else FLOAT
+
+
+def _widest(*numbers: Number) -> Any:
+    """Return the kind of several numbers side by side if there is one among these."""
+    return next((kind for kind in map(_kind, numbers) if isinstance(kind, ir.VectorType)), FLOAT)
 
 
 def _is(number: Number, constant: float) -> bool:
