@@ -20,7 +20,7 @@ from scipy.spatial.transform import Rotation
 import binaryast as ba
 from binaryast.gravity import Gravity
 from binaryast.kernels.jit import ARRAY, PAIR_POINTER, Array, PairPotential, jit
-from validation.benchmark import plain_sum, steps_of
+from validation.costs import plain_sum, steps_of
 
 ROUNDS = 15
 DEGREES = (2, 3, 4, 6, 8, 12, 16)

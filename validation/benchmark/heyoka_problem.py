@@ -16,11 +16,11 @@ from scipy.spatial.transform import Rotation
 
 import binaryast as ba
 from binaryast.equations.legendre import Snapshot
+from validation.benchmark import degree_four, two_ellipsoids
+from validation.benchmark.expressions import Exerted, InversePowers, Place, cross
+from validation.benchmark.one_ellipsoid import pure_gradient
 from validation.oracles import taylor
 from validation.oracles.taylor import REAL, Start, Units
-from validation.work_precision import degree_four, two_ellipsoids
-from validation.work_precision.expressions import Exerted, InversePowers, Place, cross
-from validation.work_precision.one_ellipsoid import pure_gradient
 
 AXES = ("primary", "inertial")  # of relative position and velocity
 Vector = Any  # three expressions

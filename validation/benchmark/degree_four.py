@@ -11,7 +11,7 @@ squares of the third semi-axis being taken off those of the others, for 1/r is h
 
 import numpy as np
 
-from validation.work_precision.expressions import Constant, Exerted, Number, Place, mean_factor, total
+from validation.benchmark.expressions import Constant, Exerted, Number, Place, mean_factor, total
 
 TWO = range(2)
 

@@ -14,10 +14,10 @@ pytest.importorskip("heyoka")
 if np.finfo(np.longdouble).eps > 1e-18:
     pytest.skip("no long doubles of 80 bits", allow_module_level=True)
 
+from validation.benchmark import figures, measure, ours, problems, tables, taylor_runs
+from validation.benchmark.heyoka_problem import HeyokaProblem
+from validation.benchmark.measure import Candidate, Point, Run
 from validation.systems import tumbling_pair
-from validation.work_precision import figures, measure, ours, problems, tables, taylor_runs
-from validation.work_precision.heyoka_problem import HeyokaProblem
-from validation.work_precision.measure import Candidate, Point, Run
 
 
 def made_up(family: str, method: str, *at: tuple[float, float, float]) -> list[Point]:

@@ -8,10 +8,10 @@ from scipy.integrate import solve_ivp
 
 import binaryast as ba
 from binaryast.equations.legendre import Snapshot
+from validation.benchmark.measure import Candidate, Run
+from validation.benchmark.problems import Problem
+from validation.benchmark.taylor_runs import COMPACT, equations
 from validation.oracles import nbody
-from validation.work_precision.measure import Candidate, Run
-from validation.work_precision.problems import Problem
-from validation.work_precision.taylor_runs import COMPACT, equations
 
 STEPS = {"leapfrog": (4.0, 400.0, 5), "whfast": (10.0, 800.0, 5), "saba": (400.0, 20000.0, 7)}
 TITLES = {"leapfrog": "leapfrog", "whfast": "WHFast", "saba": "SABA(10,6,4)"}

@@ -7,9 +7,9 @@ import numpy as np
 
 import binaryast as ba
 from binaryast.equations.legendre import Snapshot
+from validation.benchmark.heyoka_problem import in_quadruple, rounded
 from validation.oracles import taylor
 from validation.oracles.taylor import REAL, Start, Units
-from validation.work_precision.heyoka_problem import in_quadruple, rounded
 
 
 class HeyokaPoints:

@@ -15,11 +15,11 @@ import binaryast as ba
 from binaryast import working
 from binaryast.integrators import Stepping
 from validation import drawing
-from validation.benchmark import swarm
+from validation.benchmark.problems import as_clouds, clouds
+from validation.benchmark.tables import rows
+from validation.costs import swarm
 from validation.steps import take_steps
 from validation.systems import wobbling_pair
-from validation.work_precision.problems import as_clouds, clouds
-from validation.work_precision.tables import rows
 
 ROUNDS = 5
 SECONDS = 0.04  # of one timing

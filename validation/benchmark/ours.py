@@ -11,14 +11,14 @@ import astropy.units as u
 import numpy as np
 
 import binaryast as ba
+from validation.benchmark.measure import Candidate, Run
+from validation.benchmark.problems import BY_NAME, Problem
 from validation.differences import snapshot_of
-from validation.work_precision.measure import Candidate, Run
-from validation.work_precision.problems import BY_NAME, Problem
 
 COMPILING = """
 import time, warnings
-from validation.work_precision import ours
-from validation.work_precision.problems import BY_NAME
+from validation.benchmark import ours
+from validation.benchmark.problems import BY_NAME
 warnings.simplefilter("ignore")
 candidates = ours.candidates(BY_NAME[{name!r}], quick=True)
 first = candidates[0]

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from validation.work_precision.measure import Point, best
-from validation.work_precision.problems import EVERYTHING, POSITION, Problem
+from validation.benchmark.measure import Point, best
+from validation.benchmark.problems import EVERYTHING, POSITION, Problem
 
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
 

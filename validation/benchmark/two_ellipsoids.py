@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import heyoka as hy
 import numpy as np
 
-from validation.work_precision.expressions import (
+from validation.benchmark.expressions import (
     Constant,
     Exerted,
     Number,

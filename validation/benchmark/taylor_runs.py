@@ -11,11 +11,11 @@ import heyoka as hy
 import numpy as np
 
 from binaryast.equations.legendre import Snapshot
+from validation.benchmark.heyoka_points import HeyokaPoints
+from validation.benchmark.heyoka_problem import HeyokaProblem
+from validation.benchmark.measure import Candidate, Run
+from validation.benchmark.problems import BY_NAME, Problem
 from validation.oracles import taylor
-from validation.work_precision.heyoka_points import HeyokaPoints
-from validation.work_precision.heyoka_problem import HeyokaProblem
-from validation.work_precision.measure import Candidate, Run
-from validation.work_precision.problems import BY_NAME, Problem
 
 LIMIT = 300.0  # seconds to compile
 
@@ -141,7 +141,7 @@ def run_of(problem: Any, integrator: Any, duration: float) -> Callable[[], Run]:
 
 def reference(problem: Problem) -> tuple[Snapshot, float]:
     """Return where the bodies end by a Taylor series of 80 bits at 1e-19, and how far that is from one at 1e-17."""
-    from validation.work_precision.measure import errors
+    from validation.benchmark.measure import errors
 
     ends = []
     for tolerance in (1e-17, 1e-19):

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from matplotlib.figure import Figure
 
+from validation.benchmark.measure import Point, front
+from validation.benchmark.tables import Result, kinds_of
 from validation.drawing import COLOURS, MARKERS
-from validation.work_precision.measure import Point, front
-from validation.work_precision.tables import Result, kinds_of
 
 FAMILIES = {"ours": 0, "heyoka": 1, "REBOUND": 2, "SciPy": 3}
 

@@ -1,4 +1,4 @@
-"""What a step and a stage cost, of a pair, of several bodies and of points: ``python -m validation.benchmark``.
+"""What a step and a stage cost, of pairs, several bodies and points: ``python -m validation.benchmark costs``.
 
 One core, warm, interleaved, the median of several rounds. Absolute times depend on the machine and its neighbours; the
 ratio to a plain vectorised sum over 256 point pairs, taken in the same rounds, hardly does. Every time is that of the
@@ -17,7 +17,7 @@ import binaryast as ba
 from binaryast import working
 from binaryast.gravity import Gravity
 from binaryast.integrators import Stepping
-from validation import benchmark_points
+from validation import costs_of_points
 from validation.steps import SECOND_ORDER, take_steps
 from validation.timing import interleaved
 
@@ -168,7 +168,7 @@ def main() -> None:
     steps()
     stages()
     scaling()
-    benchmark_points.main()
+    costs_of_points.main()
 
 
 if __name__ == "__main__":

@@ -1,4 +1,7 @@
-"""Run the work-precision benchmark: ``python -m validation.work_precision [PROBLEM ...] [--quick] [-o FOLDER]``."""
+"""Run the benchmark: ``python -m validation.benchmark [PROBLEM ...] [costs] [sizes] [--quick] [-o FOLDER]``.
+
+What steps cost, how the cost grows with the size of a problem, and how much time each method needs for an accuracy.
+"""
 
 import argparse
 import json
@@ -10,12 +13,14 @@ from pathlib import Path
 
 import heyoka as hy
 
-from validation.work_precision import figures, ours, sizes, tables, taylor_runs
-from validation.work_precision.measure import measure
-from validation.work_precision.others import rebound_candidates, scipy_candidates
-from validation.work_precision.problems import BY_NAME, POINTS, PROBLEMS, Problem
+from validation import costs
+from validation.benchmark import figures, ours, sizes, tables, taylor_runs
+from validation.benchmark.measure import measure
+from validation.benchmark.others import rebound_candidates, scipy_candidates
+from validation.benchmark.problems import BY_NAME, POINTS, PROBLEMS, Problem
 
-QUICK = ("degree-2", "pairs-64")
+QUICK = ("costs", "degree-2", "pairs-64")
+OTHERS = ("costs", "sizes")  # that are no problems
 
 
 def run(problem: Problem, cache: str, *, quick: bool) -> tables.Result:
@@ -57,9 +62,9 @@ def every_core() -> None:
 
 def main() -> None:
     """Measure, print and write."""
-    parser = argparse.ArgumentParser(prog="python -m validation.work_precision", description=__doc__)
+    parser = argparse.ArgumentParser(prog="python -m validation.benchmark", description=__doc__.splitlines()[0])
     parser.add_argument(
-        "problems", nargs="*", metavar="PROBLEM", help=f"of {', '.join(BY_NAME)}, and sizes; all by default"
+        "problems", nargs="*", metavar="PROBLEM", help=f"of {', '.join([*BY_NAME, *OTHERS])}; all by default"
     )
     parser.add_argument("--readme", action="store_true", help="print one small table in the place of all")
     parser.add_argument("--quick", action="store_true", help="two problems with few settings, in two minutes")
@@ -67,13 +72,15 @@ def main() -> None:
         "-o", dest="folder", type=Path, default=Path("work-precision"), help="where figures and tables go"
     )
     options = parser.parse_args()
-    unknown = set(options.problems) - set(BY_NAME) - {"sizes"}
+    unknown = set(options.problems) - set(BY_NAME) - set(OTHERS)
     if unknown:
-        parser.error(f"no such problem: {', '.join(sorted(unknown))}; there are {', '.join(BY_NAME)}, sizes")
-    names = options.problems or (QUICK if options.quick else [*BY_NAME, "sizes"])
+        parser.error(f"no such problem: {', '.join(sorted(unknown))}; there are {', '.join([*BY_NAME, *OTHERS])}")
+    names = options.problems or (QUICK if options.quick else ["costs", *BY_NAME, "sizes"])
     options.folder.mkdir(parents=True, exist_ok=True)
     results = []
     began = time.monotonic()
+    if "costs" in names:
+        costs.main()
     with tempfile.TemporaryDirectory() as cache:
         hy.llvm_state.set_diskcache_path(cache)  # none of what was compiled before, and all of what is compiled now
         for problem in PROBLEMS:

@@ -7,7 +7,7 @@ from math import comb
 
 import numpy as np
 
-from validation.work_precision.expressions import Constant, InversePowers, Number, Powers, mean_factor, total
+from validation.benchmark.expressions import Constant, InversePowers, Number, Powers, mean_factor, total
 
 Polynomial = dict[tuple[int, int, int], Number]  # exponents of x, y, z
 

@@ -1,1 +1,0 @@
-"""CPU time against error, of our methods and of other codes: ``python -m validation.work_precision``."""
