@@ -55,8 +55,8 @@ def test_an_impact_off_the_centre_balances(tumbling: tuple[ba.System, ba.State],
         max(body.si.mass * np.linalg.norm(v) for body, v in zip(system.bodies, state.si.velocity, strict=True)),
         np.linalg.norm(angular),
     ]
-    assert np.linalg.norm(linear_after - linear - gained) < 2e-15 * sizes[0]
-    assert np.linalg.norm(angular_after - angular - np.cross(hit, gained)) < 2e-15 * sizes[1]
+    assert np.linalg.norm(linear_after - linear - gained) < 1e-15 * sizes[0]
+    assert np.linalg.norm(angular_after - angular - np.cross(hit, gained)) < 1e-15 * sizes[1]
     assert np.linalg.norm(np.cross(hit, gained)) > 1e-9 * sizes[1]  # of which round-off is not a part
     np.testing.assert_array_equal(after.si.position, state.si.position)
     np.testing.assert_array_equal(after.si.attitude, state.si.attitude)
@@ -125,7 +125,7 @@ def test_an_accuracy_is_that_of_each_leg() -> None:
         entry.system, entry.state, duration=10 * u.day, integrator=ba.Taylor(), impulses=entry.impulses
     )
     assert np.linalg.norm(run.si.position[-1] - exact.si.position[-1], axis=1).max() < 1e-8 * 1184 * 10
-    with pytest.raises(AccuracyError, match=r"between impulses, from 23\.8429 h to 200 d: .* it can be had for"):
+    with pytest.raises(AccuracyError, match=r"^from 23\.8429 h on, after an impulse: .* it can be had for the first"):
         ba.propagate(entry.system, entry.state, duration=200 * u.day, accuracy=1e-13, impulses=entry.impulses)
 
 
@@ -305,11 +305,14 @@ def test_a_point_is_not_hit_off_its_centre(didymos: ba.System) -> None:
         ba.propagate(system, state, duration=2 * u.h, integrator=ba.LGVI(40 * u.s), impulses=[hit])
 
 
-def test_a_spin_that_the_step_cannot_follow_is_said(didymos: ba.System) -> None:
+def test_what_an_integrator_cannot_follow_after_an_impulse(didymos: ba.System) -> None:
     state = ba.catalogue.load("didymos")[1]
     hit = ba.Impact(1 * u.h, 1e6 * u.kg, [0, -50, 0] * u.km / u.s, 1, point=[80, 0, 0] * u.m)
-    with pytest.raises(StepError, match="Dimorphos spins at"):
+    with pytest.raises(StepError, match=r"^from 3600 s on, after an impulse: step: Dimorphos spins at"):
         ba.propagate(didymos, state, duration=2 * u.h, integrator=ba.LGVI(40 * u.s), impulses=[hit])
+    kick = ba.Impulse(1 * u.h, [0, 2, 0] * u.m / u.s, 1)
+    with pytest.raises(InputError, match=r"^from 3600 s on, after an impulse: KeplerSplitting: it is for a bound pair"):
+        ba.propagate(didymos, state, duration=2 * u.h, integrator=ba.KeplerSplitting(20 * u.min), impulses=[kick])
 
 
 def test_file_and_back(didymos: ba.System, tmp_path: Path) -> None:
@@ -389,6 +392,33 @@ def test_dart() -> None:
     assert 10 < libration[1] < 30
     surface = np.sum((impact.point.value / np.array([89.75, 84.7, 57.6])) ** 2)
     assert surface == pytest.approx(1, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("gravity", "oblate", "point", "minutes"),
+    [
+        (ba.PointMass(), True, False, -31.33),
+        (ba.Multipole(4), False, False, -31.33 - 0.30),
+        (ba.Multipole(4), True, False, -31.33 - 1.50 - 0.30),
+        (ba.Multipole(4), True, True, -31.33 - 1.50 - 0.30 - 0.20),
+    ],
+)
+def test_what_changes_the_period_of_dart(gravity: object, oblate: bool, point: bool, minutes: float) -> None:
+    entry = ba.catalogue.entry("dart")
+    didymos, dimorphos = entry.system.bodies
+    if not oblate:
+        didymos = ba.RigidBody("Didymos", ba.Sphere(380 * u.m), gm=didymos.gm)
+    system = ba.System([didymos, dimorphos], gravity=gravity)
+    start = ba.State.circular_orbit(system, period=11.921473 * u.h, spins=[2.26 * u.h, "synchronous"])
+    (impact,) = entry.impulses
+    if not point:
+        impact = ba.Impulse(impact.time, impact.velocity_change(system), "Dimorphos")
+    found = [
+        ba.propagate(system, start, duration=60 * u.day, integrator=ba.Splitting(4 * u.min), impulses=impulses).legs[-1]
+        for impulses in ([], [impact])
+    ]
+    before, after = (ba.analysis.mutual_period(leg).to_value("min") for leg in found)
+    assert after - before == pytest.approx(minutes, abs=0.05)
 
 
 def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:

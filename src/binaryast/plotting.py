@@ -60,8 +60,9 @@ def _axes(run: Trajectory, ax: Axes | None) -> Axes:
 
 def _over_time(ax: Axes, run: Trajectory, label: str, title: str) -> Axes:
     ax.set(xlabel=f"time [{_time(run)[1]}]", ylabel=label, title=title)
-    for leg in run.legs[1:]:
-        ax.axvline(_time(run)[0][-1] * leg.si.time[0] / max(run.si.time[-1], 1e-300), color=DARK, lw=0.6, ls=":")
+    time, _ = _time(run)
+    for when in time[1:][np.diff(time) == 0]:  # an impulse
+        ax.axvline(when, color=DARK, lw=0.6, ls=":")
     ax.margins(x=0)
     ax.grid(alpha=0.25)
     return ax

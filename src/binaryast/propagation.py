@@ -14,7 +14,7 @@ import numpy as np
 from astropy.units import Quantity
 
 from binaryast import choosing, constants, legs
-from binaryast.errors import AccuracyError, EndWarning, GravityWarning, InputError, StepWarning
+from binaryast.errors import AccuracyError, BinaryastError, EndWarning, GravityWarning, InputError, StepWarning
 from binaryast.gravity import LARGEST_DEGREE
 from binaryast.impulses import AnyImpulse, in_order
 from binaryast.integrators import Integrator, RungeKutta, Splitting, Stepping, Taylor
@@ -158,6 +158,10 @@ def propagate(
             if not runs:
                 raise
             followed = _interrupted(system, now, leg)
+        except BinaryastError as error:  # it speaks of a start, a duration: those of the leg
+            if not leg.begin:
+                raise
+            raise type(error)(f"from {span(leg.begin)} on, after an impulse: {error}") from None
         runs.append(_trajectory(system, state, *followed))
         if runs[-1].status != "completed":
             break
@@ -177,12 +181,7 @@ def _follow(system: System, state: State, leg: Leg, method: Method) -> Followed:
     if not leg.length:
         return Followed(_one_row(system, state, leg), method.integrator or TRY_OUT, {})
     if method.integrator is None:
-        try:
-            return _to_accuracy(system, state, leg, method)
-        except AccuracyError as error:
-            if leg.length == leg.whole:
-                raise
-            raise AccuracyError(f"between impulses, from {span(leg.begin)} to {span(leg.end)}: {error}") from None
+        return _to_accuracy(system, state, leg, method)
     _check_kinds(system, state, method.integrator)
     compiling = "heyoka compiles the equations, once for all systems of one kind; it may take some seconds"
     with said_if_long(compiling, method.progress and isinstance(method.integrator, Taylor)):
