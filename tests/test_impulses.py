@@ -4,6 +4,8 @@ import json
 import os
 import pickle
 import signal
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import astropy.units as u
@@ -253,6 +255,23 @@ def test_ctrl_c_in_a_later_leg_keeps_what_there_was(didymos: ba.System, monkeypa
     assert run.si.time[-1] == 3600
     assert run.message == "stopped after 3600 s; go on from the last row, run[-1]"
     assert [len(leg) for leg in run.legs][1:] == [1]  # the state after the first impulse, from which to go on
+
+
+@pytest.mark.parametrize("name", ["LGVI", "RungeKutta", "Taylor"])
+def test_ctrl_c_at_the_end_of_a_leg_is_not_lost(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Legs may be so short that it always comes too late to end one early."""
+    system, state = ba.catalogue.load("didymos")
+
+    @contextmanager
+    def pressing(end: float, progress: bool, begin: float) -> Iterator[Callable]:
+        yield lambda elapsed: os.kill(os.getpid(), signal.SIGINT) if begin + elapsed == 7200 else None
+
+    monkeypatch.setattr(ba.propagation, "bar", pressing)
+    kicks = [ba.Impulse(time * u.h, SPEED, 1) for time in (1, 2)]
+    run = ba.propagate(system, state, duration=3 * u.h, integrator=METHODS[name], impulses=kicks)
+    assert run.status == "interrupted"
+    assert run.si.time[-1] == 7200
+    assert len(run.legs) == 3
 
 
 @pytest.mark.parametrize(

@@ -148,13 +148,16 @@ def propagate(
     interval = None if save_every is None else float(to_si(save_every, "s", "save_every", sign="positive"))
     impulses = in_order(impulses, system, end)
     runs: list[Trajectory] = []
+    pressed = False
     for leg, due in legs.cut(end, interval, impulses):
         now = runs[-1][-1] if runs else state
         for impulse in due:
             now = impulse.apply(now, system)
         try:
+            if pressed and leg.length:
+                raise KeyboardInterrupt
             followed = _follow(system, now, leg, method)
-        except KeyboardInterrupt:  # what has been computed is kept
+        except KeyboardInterrupt:  # between two legs: what has been computed is kept
             if not runs:
                 raise
             followed = _interrupted(system, now, leg)
@@ -163,6 +166,7 @@ def propagate(
                 raise
             raise type(error)(f"from {span(leg.begin)} on, after an impulse: {error}") from None
         runs.append(_trajectory(system, state, *followed))
+        pressed = followed.outcome.pressed
         if runs[-1].status != "completed":
             break
     return legs.joined(runs, impulses)

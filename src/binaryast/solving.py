@@ -49,6 +49,7 @@ class SolvedRun:
         self.rows = [self.y]
         self.watch = Watch()
         self.ended, self.message = "completed", ""
+        self.pressed: list[int] = []
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
         if touching := coinciding(system, state.si.position) or self._touching(self.y, self.y):
             raise overlap(system, touching - 1, state.si.position)
@@ -67,14 +68,14 @@ class SolvedRun:
 
     def go(self, show: Callable[[float], None]) -> None:
         """Follow the motion as far as it goes."""
-        with keyboard() as pressed, np.errstate(all="ignore"):  # SciPy's own arithmetic, on its way to give up
+        with keyboard() as self.pressed, np.errstate(all="ignore"):  # SciPy's own arithmetic, on its way to give up
             for solver in self._solvers():
                 while solver.status == "running" and self.ended == "completed":
                     began = time.perf_counter()
                     self._step(solver)
                     self.wall_time += time.perf_counter() - began
                     show(self.elapsed)
-                    if pressed and self.ended == "completed" and self.elapsed < self.end:
+                    if self.pressed and self.ended == "completed" and self.elapsed < self.end:
                         self.ended, self.message = "interrupted", interruption_message(self.begin + self.elapsed)
                 if self.ended != "completed":
                     break
@@ -173,6 +174,7 @@ class SolvedRun:
             steps=self.steps,
             step=self.segments[0].step if self.segments else self.elapsed / max(self.steps, 1),
             wall_time=self.wall_time,
+            pressed=bool(self.pressed),
         )
 
 

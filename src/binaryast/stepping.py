@@ -182,6 +182,7 @@ class SteppedRun:
             steps=self.steps,
             step=self.segments[0].step if self.segments else 0.0,
             wall_time=self.wall_time,
+            pressed=bool(self.pressed),
         )
 
     def _end(self) -> tuple[str, str]:

@@ -33,6 +33,7 @@ class TaylorRun:
         self.working = WorkingBodies(system, state)
         self.watch = Watch()
         self.ended, self.message = "completed", ""
+        self.pressed: list[int] = []
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
         self.rows = [self._row()]
         self._begin(state)
@@ -52,13 +53,13 @@ class TaylorRun:
 
     def go(self, show: Callable[[float], None]) -> None:
         """Follow the motion as far as it goes."""
-        with keyboard() as pressed:
+        with keyboard() as self.pressed:
             while self.elapsed < self.end and self.ended == "completed":
                 began = time.perf_counter()
                 self._step()
                 self.wall_time += time.perf_counter() - began
                 show(self.elapsed)
-                if pressed and self.ended == "completed" and self.elapsed < self.end:
+                if self.pressed and self.ended == "completed" and self.elapsed < self.end:
                     self.ended, self.message = "interrupted", interruption_message(self.begin + self.elapsed)
         if self.times[len(self.rows) - 1] != self.elapsed:  # what ended the run is not one of its rows
             self.times = np.append(self.times[: len(self.rows)], self.elapsed)
@@ -156,4 +157,5 @@ class TaylorRun:
             steps=self.steps,
             step=self.elapsed / max(self.steps, 1),
             wall_time=self.wall_time,
+            pressed=bool(self.pressed),
         )
