@@ -8,7 +8,7 @@ import pytest
 
 import binaryast as ba
 from binaryast.errors import ContactError, EndWarning, GravityWarning, InputError, StepError, StepWarning
-from binaryast.schedule import schedule
+from binaryast.schedule import Leg, schedule
 
 
 @pytest.mark.parametrize(
@@ -24,7 +24,7 @@ from binaryast.schedule import schedule
     ],
 )
 def test_schedules(end: float, step: float, interval: float | None, segments: list) -> None:
-    found = schedule(end, step, interval)
+    found = schedule(Leg.of_run(end, interval), step)
     for segment, expected in zip(found, segments, strict=True):
         assert segment == pytest.approx(expected)
     assert sum(segment.step * segment.steps for segment in found) == pytest.approx(end, rel=1e-14)
@@ -256,7 +256,7 @@ def test_gravity_that_goes_wrong_ends_a_run_and_no_nan_leaves(didymos: ba.System
 
 
 def test_the_largest_step_of_all_segments_is_what_counts(didymos: ba.System) -> None:
-    segments = schedule(139.0, 40.0, 50.0)
+    segments = schedule(Leg.of_run(139.0, 50.0), 40.0)
     assert max(segment.step for segment in segments) == pytest.approx(25.0)
 
 

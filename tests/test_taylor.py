@@ -19,6 +19,7 @@ from binaryast import cli, progress
 from binaryast.errors import ContactError, EndWarning, InputError
 from binaryast.gravity import Gravity
 from binaryast.integrators import Integrator
+from binaryast.schedule import Leg
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.taylor.attraction import Formula, formula_of
@@ -171,7 +172,7 @@ def test_a_moving_barycentre_costs_nothing() -> None:
 def test_its_order_is_what_heyoka_takes() -> None:
     case = ba.catalogue.load("dumbbells")
     for tolerance in (1e-3, 1e-9, 1e-16, 1e-18):
-        one = TaylorRun(*case, ba.Taylor(tolerance), 1.0, None)
+        one = TaylorRun(*case, ba.Taylor(tolerance), Leg.of_run(1.0))
         assert one.integrator.order == ba.Taylor(tolerance).order
         assert one.integrator.tol == tolerance
         assert one.integrator.compact_mode
@@ -228,7 +229,7 @@ def test_points_that_fall_into_each_other_end_a_run() -> None:
 @needs_heyoka
 def test_ctrl_c_stops_between_steps_and_the_rest_can_follow() -> None:
     system, state = tumbling_pair()
-    one = TaylorRun(system, state, ba.Taylor(), 36000.0, 60.0)
+    one = TaylorRun(system, state, ba.Taylor(), Leg.of_run(36000.0, 60.0))
     one.go(lambda _: signal.raise_signal(signal.SIGINT))
     outcome = one.outcome()
     assert outcome.status == "interrupted"

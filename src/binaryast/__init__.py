@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         SecondDegree,
         pair_potential,
     )
+    from binaryast.impulses import Impact, Impulse
     from binaryast.integrators import LGVI, KeplerSplitting, RungeKutta, Splitting, Taylor
     from binaryast.layered import Layered
     from binaryast.orbits import Orbit
@@ -48,6 +49,8 @@ _HOMES = {
     "Ellipsoid": "shapes",
     "EllipsoidPair": "gravity",
     "GravityField": "fields",
+    "Impact": "impulses",
+    "Impulse": "impulses",
     "InertiaIntegrals": "coefficients",
     "KeplerSplitting": "integrators",
     "LGVI": "integrators",
@@ -94,6 +97,8 @@ __all__ = [
     "Ellipsoid",
     "EllipsoidPair",
     "GravityField",
+    "Impact",
+    "Impulse",
     "InertiaIntegrals",
     "KeplerSplitting",
     "Layered",

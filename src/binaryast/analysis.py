@@ -68,7 +68,8 @@ def mean_orbit_axes(run: Trajectory, bodies: Bodies = None) -> Floats:
 def mutual_period(run: Trajectory, bodies: Bodies = None) -> Quantity:
     """Return the mean sidereal period of the mutual orbit.
 
-    It is the slope of a straight line through the angle, so oscillations within an orbit average out.
+    It is the slope of a straight line through the angle, so oscillations within an orbit average out. Of a run with
+    impulses, which change it, ask for that of each of ``run.legs``.
 
     Parameters
     ----------

@@ -18,7 +18,7 @@ def names() -> list[str]:
     --------
     >>> import binaryast as ba
     >>> ba.catalogue.names()
-    ['didymos', 'dumbbells', 'moshup', 'patroclus', 'sn263']
+    ['dart', 'didymos', 'dumbbells', 'moshup', 'patroclus', 'sn263']
     """
     return sorted(file.name.removesuffix(".toml") for file in _ENTRIES.iterdir() if file.name.endswith(".toml"))
 

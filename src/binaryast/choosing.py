@@ -224,7 +224,7 @@ def estimate(trials: Trials, plan: Plan, outcome: Outcome, accuracy: float) -> E
     if plan.floor is not None:
         return Estimate(plan.error, plan.floor)
     chosen = np.unique(np.linspace(0, len(outcome.time) - 1, ROWS + 1).round().astype(int))
-    times = outcome.time[chosen]
+    times = outcome.time[chosen] - outcome.time[0]
     rows = Motion(*(array[chosen] for array in outcome.motion))
     for longer in (2.0, 1.5, 1 / 1.5):
         segments = between(times, outcome.step * longer)

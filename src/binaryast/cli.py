@@ -22,6 +22,7 @@ from binaryast.errors import BinaryastError, InputError
 if TYPE_CHECKING:
     from binaryast.bodies import RigidBody
     from binaryast.gravity import Gravity
+    from binaryast.impulses import AnyImpulse
     from binaryast.integrators import Integrator
     from binaryast.scenario import Scenario
     from binaryast.state import State
@@ -263,8 +264,8 @@ def _run(options: argparse.Namespace) -> int:
             storage.refuse(path, force=options.force)
     if output.suffix.lower() != RUN:
         raise InputError(f"--output: {output}: the file of a run is HDF5: give a name that ends in .h5")
-    system, state, method, duration, save_every = _start(options)
-    run = _propagate(system, state, method, duration, save_every, progress=not options.json)
+    system, state, how, duration, save_every = _start(options)
+    run = _propagate(system, state, how, duration, save_every, progress=not options.json)
     run.write(output, force=options.force)
     code = 0 if picture is None else _draw(run, picture, output, force=options.force)
     _report(run, output, None if code else picture, as_json=options.json)
@@ -310,7 +311,7 @@ def _time(text: str | None, option: str) -> Any:
 def _start(options: argparse.Namespace) -> tuple["System", "State", dict[str, Any], Any, Any]:
     """Return what to run: a scenario or the end of an earlier run, with the options in the place of its own values.
 
-    The third of them is the integrator or the accuracy, by name.
+    The third of them is how: the integrator or the accuracy, and the impulses, by name.
     """
     duration, step, save_every = (
         _time(getattr(options, name), f"--{name.replace('_', '-')}") for name in ("duration", "step", "save_every")
@@ -323,16 +324,30 @@ def _start(options: argparse.Namespace) -> tuple["System", "State", dict[str, An
         if duration is None:
             raise InputError(f"--duration: say how long to go on from the end of {options.system}, such as 60d")
         pair, start, integrator, accuracy = earlier.system, earlier[-1], earlier.integrator, earlier.accuracy
+        reached = earlier.time[-1]
+        impulses = [replace(one, time=one.time - reached) for one in earlier.impulses if one.time > reached]
     else:
         entry = _scenario(options.system)
         pair, start, integrator, accuracy = entry.system, entry.state, entry.integrator, entry.accuracy
-        duration = entry.duration if duration is None else duration
+        duration, impulses = entry.duration if duration is None else duration, list(entry.impulses)
         save_every = entry.save_every if save_every is None else save_every
     if options.degree is not None:
         pair = replace(pair, gravity=_gravity_of_degree(options.degree))
     if save_every is not None and options.save_every is None and save_every > duration:
         save_every = None  # the scenario's, for its own longer duration
-    return pair, start, _method(integrator, accuracy, step, options), duration, save_every
+    how = _method(integrator, accuracy, step, options) | {"impulses": _within(impulses, duration)}
+    return pair, start, how, duration, save_every
+
+
+def _within(impulses: "list[AnyImpulse]", duration: Any) -> "list[AnyImpulse]":
+    """Return the impulses that a run is long enough for, and say which it is not."""
+    from binaryast.units import span
+
+    for one in impulses:
+        if one.time > duration:
+            left_out = f"the {type(one).__name__.lower()} after {span(one.time.value)}"
+            _show_warning(f"{left_out} is left out: the run ends after {span(duration.value)}")
+    return [one for one in impulses if one.time <= duration]
 
 
 def _method(
@@ -392,7 +407,7 @@ def _integrator(before: "Integrator | None", step: Any, options: argparse.Namesp
 
 
 def _propagate(
-    system: "System", state: "State", method: dict[str, Any], duration: Any, save_every: Any, *, progress: bool
+    system: "System", state: "State", how: dict[str, Any], duration: Any, save_every: Any, *, progress: bool
 ) -> "Trajectory":
     """Run; what ends a run early is in the report, so it needs no warning."""
     from binaryast.errors import EndWarning
@@ -400,7 +415,7 @@ def _propagate(
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", EndWarning)
-        return propagate(system, state, duration=duration, save_every=save_every, progress=progress, **method)
+        return propagate(system, state, duration=duration, save_every=save_every, progress=progress, **how)
 
 
 def _periods(run: "Trajectory") -> dict[str, float]:
@@ -416,11 +431,34 @@ def _periods(run: "Trajectory") -> dict[str, float]:
     return periods
 
 
-def _report(run: "Trajectory", output: Path, picture: Path | None, *, as_json: bool) -> None:
-    """Print the summary, or one JSON object."""
-    from binaryast.trajectory import FIGURES
+def _motion(leg: "Trajectory") -> dict[str, Any]:
+    """Return what is read off the rows between impulses: periods [s], and how far the secondary of a pair librates."""
+    import numpy as np
 
-    periods = _periods(run)
+    from binaryast import analysis
+
+    libration = None
+    if len(leg.system.bodies) == 2 and len(leg) > 1:
+        with contextlib.suppress(InputError):  # a point, a line, or rows too far apart
+            largest = float(np.degrees(np.abs(analysis.libration_angle(leg).value).max()))
+            libration = largest if largest < 90 else None  # it turns freely
+    return {"periods": _periods(leg), "libration": libration}
+
+
+def _shown(impulse: "AnyImpulse") -> dict[str, Any]:
+    """Return an impulse as plain numbers, in SI."""
+    plain = {name: getattr(value, "value", value) for name, value in impulse.arguments().items()}
+    numbers = {name: value.tolist() if hasattr(value, "tolist") else value for name, value in plain.items()}
+    return {"type": type(impulse).__name__, **numbers}
+
+
+def _report(run: "Trajectory", output: Path, picture: Path | None, *, as_json: bool) -> None:
+    """Print the summary, or one JSON object; where there are impulses, periods are those after the last."""
+    from binaryast.trajectory import FIGURES
+    from binaryast.units import span
+
+    legs = [{"begin": float(leg.si.time[0]), "end": float(leg.si.time[-1]), **_motion(leg)} for leg in run.legs]
+    periods = legs[-1]["periods"]
     pair = len(run.system.bodies) == 2
     if as_json:
         names = ("status", "message", "steps", "step", "wall_time", "choice", *FIGURES)
@@ -433,6 +471,8 @@ def _report(run: "Trajectory", output: Path, picture: Path | None, *, as_json: b
             "duration": float(run.si.time[-1]),
             "mutual_period": periods.get(run.system.names[1]) if pair else None,
             "periods": periods,
+            "impulses": [_shown(one) for one in run.impulses],
+            "legs": legs,
             "file": str(output),
             "picture": None if picture is None else str(picture),
             "provenance": run.provenance,
@@ -440,8 +480,12 @@ def _report(run: "Trajectory", output: Path, picture: Path | None, *, as_json: b
         print(json.dumps(result, allow_nan=False, default=float))
         return
     print(run.summary())
-    for name, period in periods.items():
-        print(f"  {'mutual period' if pair else f'period of {name}'} {period / 3600:.8g} h")
+    for leg in legs:
+        when = "" if len(legs) == 1 else f" from {span(leg['begin'])} to {span(leg['end'])}"
+        for name, period in leg["periods"].items():
+            print(f"  {'mutual period' if pair else f'period of {name}'}{when} {period / 3600:.8g} h")
+        if len(legs) > 1 and leg["libration"] is not None:
+            print(f"  libration{when} at most {leg['libration']:.3g} deg")
     print(f"  written: {output}" + ("" if picture is None else f", {picture}"))
 
 

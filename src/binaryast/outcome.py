@@ -63,6 +63,8 @@ class Outcome:
         How it ended.
     steps, step, wall_time : int, float, float
         Steps taken, their size [s], and how long they took [s].
+    pressed : bool
+        Whether there was a Ctrl-C, be it too late to end it early.
     """
 
     time: Floats
@@ -74,6 +76,7 @@ class Outcome:
     steps: int
     step: float
     wall_time: float
+    pressed: bool = False
 
 
 def contact_message(system: System, pair: int, after: float) -> str:

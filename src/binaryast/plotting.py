@@ -60,6 +60,9 @@ def _axes(run: Trajectory, ax: Axes | None) -> Axes:
 
 def _over_time(ax: Axes, run: Trajectory, label: str, title: str) -> Axes:
     ax.set(xlabel=f"time [{_time(run)[1]}]", ylabel=label, title=title)
+    time, _ = _time(run)
+    for when in time[1:][np.diff(time) == 0]:  # an impulse
+        ax.axvline(when, color=DARK, lw=0.6, ls=":")
     ax.margins(x=0)
     ax.grid(alpha=0.25)
     return ax
@@ -244,14 +247,18 @@ def energy_exchange(run: Trajectory, ax: Axes | None = None) -> Axes:
 
 
 def conserved(run: Trajectory, ax: Axes | None = None) -> Axes:
-    """Draw the errors of energy, angular momentum and rotation at the saved rows, on a logarithmic axis."""
+    """Draw the errors of energy, angular momentum and rotation at the saved rows, on a logarithmic axis.
+
+    Those of energy and angular momentum are from the start, or the impulse before.
+    """
     ax = _axes(run, ax)
     time, _ = _time(run)
-    energy, momentum = run.energy.value, run.angular_momentum.value
+    energy = np.concatenate([_relative_error(leg.energy.value[:, None]) for leg in run.legs])
+    momentum = np.concatenate([_relative_error(leg.angular_momentum.value) for leg in run.legs])
     curves: tuple[tuple[Floats, str, str], ...] = (
-        (_relative_error(energy[:, None]), "energy", PRIMARY),
+        (energy, "energy", PRIMARY),
         (run.rotation_error, r"rotation, $\|I - R^T R\|$", "#6a994e"),
-        (_relative_error(momentum), "angular momentum", SECONDARY),
+        (momentum, "angular momentum", SECONDARY),
     )
     floor = np.finfo(float).eps / 4  # an error of zero has no logarithm
     for values, label, colour in curves:

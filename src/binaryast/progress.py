@@ -31,8 +31,8 @@ def keyboard() -> Iterator[list[int]]:
 
 
 @contextmanager
-def bar(end: float, progress: bool) -> Iterator[Any]:
-    """Give a function that shows how far the run is; it appears only for runs of more than a second."""
+def bar(end: float, progress: bool, begin: float = 0.0) -> Iterator[Any]:
+    """Give a function that shows how far the run is, in seconds since ``begin``; it appears after a second."""
     if not progress:
         yield lambda _: None
         return
@@ -40,10 +40,11 @@ def bar(end: float, progress: bool) -> Iterator[Any]:
 
     unit, size = ("d", u.day.to(u.s)) if end > 2 * u.day.to(u.s) else ("s", 1.0)
     layout_of_bar = "{desc}{percentage:3.0f}%|{bar}| {n:.6g}/{total:.6g} {unit} simulated, {remaining} left"
-    with tqdm(total=end / size, unit=unit, delay=1.0, bar_format=layout_of_bar, leave=False) as shown:
+    look = {"unit": unit, "delay": 1.0, "bar_format": layout_of_bar, "leave": False}
+    with tqdm(total=end / size, initial=begin / size, **look) as shown:
 
         def show(elapsed: float) -> None:
-            shown.update(elapsed / size - shown.n)
+            shown.update((begin + elapsed) / size - shown.n)
 
         yield show
 

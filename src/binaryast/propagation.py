@@ -2,24 +2,27 @@
 
 import platform
 import warnings
+from collections.abc import Sequence
+from dataclasses import replace
 from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
 from math import inf, pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from astropy.units import Quantity
 
-from binaryast import choosing, constants
-from binaryast.errors import AccuracyError, EndWarning, GravityWarning, InputError, StepWarning
+from binaryast import choosing, constants, legs
+from binaryast.errors import AccuracyError, BinaryastError, EndWarning, GravityWarning, InputError, StepWarning
 from binaryast.gravity import LARGEST_DEGREE
+from binaryast.impulses import AnyImpulse, in_order
 from binaryast.integrators import Integrator, RungeKutta, Splitting, Stepping, Taylor
 from binaryast.kernels import loop
 from binaryast.kernels.jit import source_hash
-from binaryast.outcome import Outcome
+from binaryast.outcome import Outcome, interruption_message
 from binaryast.progress import bar, said_if_long
-from binaryast.schedule import schedule
+from binaryast.schedule import Leg, schedule
 from binaryast.state import State
 from binaryast.stepping import SteppedRun, turn_error
 from binaryast.system import Pair, System
@@ -40,6 +43,22 @@ ATTEMPTS = 8  # to reach it
 TRY_OUT = Splitting(quantity(1.0, "s"))
 
 
+class Method(NamedTuple):
+    """How a run is to be followed: by an integrator, or to an accuracy; and whether a bar is shown."""
+
+    integrator: Integrator | None
+    accuracy: float
+    progress: bool
+
+
+class Followed(NamedTuple):
+    """A leg that is over: the rows and how it ended, by which integrator, and what an accuracy adds to the run."""
+
+    outcome: Outcome
+    integrator: Integrator
+    asked: dict[str, Any]
+
+
 def propagate(
     system: System,
     state: State,
@@ -48,6 +67,7 @@ def propagate(
     integrator: Integrator | None = None,
     accuracy: float | None = None,
     save_every: Quantity | None = None,
+    impulses: Sequence[AnyImpulse] = (),
     progress: bool = False,
 ) -> Trajectory:
     """Follow a system through time.
@@ -71,6 +91,11 @@ def propagate(
     save_every : Quantity, optional
         Time between saved rows; met exactly, with one more row at the end where it does not divide ``duration``. By
         default at most 2000 rows are kept, each a whole number of steps apart.
+    impulses : sequence of Impulse and Impact, optional
+        Sudden changes of velocities and spins, each at its very time, several at one time in the order given. They cut
+        the run into legs, `Trajectory.legs`, each an ordinary run from the changed state; the rows before and after
+        are both kept, at the same time. Figures of the trajectory are the largest of all legs: errors of energy and
+        momentum are those from the start of each leg, and an accuracy is that of each leg by itself.
     progress : bool
         Whether to show a bar with the simulated and the remaining time, on standard error.
 
@@ -114,84 +139,123 @@ def propagate(
     >>> run.estimated_error < 1e-8
     True
     """
-    if integrator is None:
-        return _to_accuracy(
-            system, state, duration, 1e-6 if accuracy is None else accuracy, save_every, progress=progress
-        )
-    if accuracy is not None:
+    if integrator is not None and accuracy is not None:
         raise InputError(
             f"propagate: got integrator={brief(integrator)} and accuracy={brief(accuracy)}: give one of them"
         )
-    _check_kinds(system, state, integrator)
+    method = Method(integrator, _accuracy(1e-6 if accuracy is None else accuracy), progress)
+    _check_kinds(system, state, integrator or TRY_OUT)
     end = float(to_si(duration, "s", "duration", sign="positive"))
     interval = None if save_every is None else float(to_si(save_every, "s", "save_every", sign="positive"))
-    compiling = "heyoka compiles the equations, once for all systems of one kind; it may take some seconds"
-    with said_if_long(compiling, progress and isinstance(integrator, Taylor)):
-        run = _run(system, state, integrator, end, interval)
-    with bar(end, progress) as show:
-        run.go(show)
-    return _trajectory(system, state, integrator, run.outcome())
+    impulses = in_order(impulses, system, end)
+    runs: list[Trajectory] = []
+    pressed = False
+    for leg, due in legs.cut(end, interval, impulses):
+        now = runs[-1][-1] if runs else state
+        for impulse in due:
+            now = impulse.apply(now, system)
+        try:
+            if pressed and leg.length:
+                raise KeyboardInterrupt
+            followed = _follow(system, now, leg, method)
+        except KeyboardInterrupt:  # between two legs: what has been computed is kept
+            if not runs:
+                raise
+            followed = _interrupted(system, now, leg)
+        except BinaryastError as error:  # it speaks of a start, a duration: those of the leg
+            if not leg.begin:
+                raise
+            raise type(error)(f"from {span(leg.begin)} on, after an impulse: {error}") from None
+        runs.append(_trajectory(system, state, *followed))
+        pressed = followed.outcome.pressed
+        if runs[-1].status != "completed":
+            break
+    return legs.joined(runs, impulses)
 
 
-def _to_accuracy(
-    system: System, state: State, duration: Quantity, accuracy: float, save_every: Quantity | None, *, progress: bool
-) -> Trajectory:
-    """Follow a system to an accuracy: plan, run, estimate, and again with a shorter step where it is not reached."""
-    _check_kinds(system, state)
-    asked = float(numbers(accuracy, "accuracy", ()))
+def _accuracy(value: Any) -> float:
+    """Return an accuracy within bounds."""
+    asked = float(numbers(value, "accuracy", ()))
     if not LEAST_ACCURACY <= asked <= MOST_ACCURACY:
         raise InputError(f"accuracy: expected {LEAST_ACCURACY:g} to {MOST_ACCURACY:g}, got {asked:g}")
-    end = float(to_si(duration, "s", "duration", sign="positive"))
-    interval = None if save_every is None else float(to_si(save_every, "s", "save_every", sign="positive"))
-    SteppedRun(system, state, TRY_OUT, schedule(end, end, interval))  # what is wrong with the start is said first
+    return asked
+
+
+def _follow(system: System, state: State, leg: Leg, method: Method) -> Followed:
+    """Follow a system along a leg, as far as it goes."""
+    if not leg.length:
+        return Followed(_one_row(system, state, leg), method.integrator or TRY_OUT, {})
+    if method.integrator is None:
+        return _to_accuracy(system, state, leg, method)
+    _check_kinds(system, state, method.integrator)
+    compiling = "heyoka compiles the equations, once for all systems of one kind; it may take some seconds"
+    with said_if_long(compiling, method.progress and isinstance(method.integrator, Taylor)):
+        run = _run(system, state, method.integrator, leg)
+    with bar(leg.whole, method.progress, leg.begin) as show:
+        run.go(show)
+    return Followed(run.outcome(), method.integrator, {})
+
+
+def _one_row(system: System, state: State, leg: Leg) -> Outcome:
+    """Return a state as a run that has not moved."""
+    return SteppedRun(system, state, TRY_OUT, [], leg.begin).outcome()
+
+
+def _interrupted(system: System, state: State, leg: Leg) -> Followed:
+    """Return a leg that was stopped before it began to move."""
+    message = interruption_message(leg.begin)
+    return Followed(replace(_one_row(system, state, leg), status="interrupted", message=message), TRY_OUT, {})
+
+
+def _to_accuracy(system: System, state: State, leg: Leg, method: Method) -> Followed:
+    """Follow a leg to an accuracy: plan, run, estimate, and again with a shorter step where it is not reached."""
+    asked, length = method.accuracy, leg.length
+    SteppedRun(system, state, TRY_OUT, schedule(leg, leg.whole))  # what is wrong with the start is said first
     trials = Trials(system, state)
-    plan = choosing.plan(trials, end, asked, min(end / 4, interval or end))
+    plan = choosing.plan(trials, length, asked, min(length / 4, leg.interval or length))
     for _ in range(ATTEMPTS):
-        run = SteppedRun(system, state, plan.integrator, schedule(end, plan.integrator.step.value, interval))
-        with bar(end, progress) as show:
+        run = SteppedRun(system, state, plan.integrator, schedule(leg, plan.integrator.step.value), leg.begin)
+        with bar(leg.whole, method.progress, leg.begin) as show:
             run.go(show)
         outcome = run.outcome()
+        about = {"accuracy": asked, "choice": plan.reason}
         if outcome.status != "completed":
-            return _trajectory(system, state, plan.integrator, outcome, accuracy=asked, choice=plan.reason)
+            return Followed(outcome, plan.integrator, about)
         try:
-            with bar(end, progress) as trials.show:
+            with bar(leg.whole, method.progress, leg.begin) as trials.show:
                 found = choosing.estimate(trials, plan, outcome, asked)
         except KeyboardInterrupt:  # what has been computed is kept
             found = None
         if found is None:
             text = "the error at the end is not known: runs with other steps did not come so far, or were stopped"
-            warnings.warn(text, StepWarning, stacklevel=3)
-        if found is None or found.within(asked):
-            error = None if found is None else found.error
-            return _trajectory(
-                system, state, plan.integrator, outcome, accuracy=asked, estimated_error=error, choice=plan.reason
-            )
+            warnings.warn(text, StepWarning, stacklevel=4)
+            return Followed(outcome, plan.integrator, about)
+        if found.within(asked):
+            return Followed(outcome, plan.integrator, about | {"estimated_error": found.error})
         plan = plan.shortened(outcome.step, max(1.0, found.of_steps / asked))
     raise AccuracyError(
-        f"accuracy: {asked:g} is not reached after {span(end)} with steps down to {outcome.step:.3g} s: ask for ten "
-        "times more, or for a shorter run"
+        f"accuracy: {asked:g} is not reached after {span(leg.end)} with steps down to {outcome.step:.3g} s: ask for "
+        "ten times more, or for a shorter run"
     )
 
 
-def _run(
-    system: System, state: State, integrator: Integrator, end: float, interval: float | None
-) -> "SteppedRun | SolvedRun | TaylorRun":
+def _run(system: System, state: State, integrator: Integrator, leg: Leg) -> "SteppedRun | SolvedRun | TaylorRun":
     """Return the run of an integrator, looked at and ready to go."""
     if isinstance(integrator, Stepping):
-        segments = schedule(end, integrator.step.value, interval)
+        segments = schedule(leg, integrator.step.value)
         longest = max(segment.step for segment in segments)
         _check_turns(system, state, integrator, longest)
         _check_orbits(system, state, integrator, longest)
-        return SteppedRun(system, state, integrator, segments)
+        return SteppedRun(system, state, integrator, segments, leg.begin)
     if isinstance(integrator, Taylor):
         from binaryast.taylor.run import TaylorRun
 
-        return TaylorRun(system, state, integrator, end, interval)
+        return TaylorRun(system, state, integrator, leg)
     if not isinstance(integrator, RungeKutta):
         raise InputError(f"integrator: expected one of binaryast's, such as ba.LGVI, got {brief(integrator)}")
     from binaryast.solving import SolvedRun  # a third of a second, needed only here
 
-    return SolvedRun(system, state, integrator, end, interval)
+    return SolvedRun(system, state, integrator, leg)
 
 
 def _check_kinds(system: Any, state: Any, integrator: Any = TRY_OUT) -> None:
@@ -229,7 +293,7 @@ def _check_turns(system: System, state: State, integrator: Stepping, step: float
             warnings.warn(
                 f"{what} turns {body.name} by {turn:.2g} rad: {lead}; {remedy}, and ba.Splitting turns it exactly",
                 StepWarning,
-                stacklevel=4,
+                stacklevel=5,
             )
 
 
@@ -245,12 +309,14 @@ def _check_orbits(system: System, state: State, integrator: Stepping, step: floa
                 f"{0.05 / rate / longest:.3g} s would be 0.05 rad of it. A light body's error does not show in the "
                 "energy of all",
                 StepWarning,
-                stacklevel=4,
+                stacklevel=5,
             )
 
 
-def _trajectory(system: System, state: State, integrator: Integrator, outcome: Outcome, **asked: Any) -> Trajectory:
-    """Return what has been computed, and warn where it ended early or badly."""
+def _trajectory(
+    system: System, state: State, outcome: Outcome, integrator: Integrator, asked: dict[str, Any]
+) -> Trajectory:
+    """Return what has been computed of a run from a state, and warn where it ended early or badly."""
     if outcome.status in ("contact", "failed"):
         warnings.warn(f"the run ended after {outcome.time[-1]:g} s: {outcome.message}", EndWarning, stacklevel=3)
     figures = _figures(system, outcome)

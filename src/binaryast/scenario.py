@@ -51,6 +51,15 @@ none::
     save_every = "10 min"                         # may be left out
     accuracy = 1e-8                               # may be left out; then the command picks method and step by itself
     integrator = { type = "LGVI", order = 8 }     # so may this: LGVI of order 2
+
+    [[impulses]]                                  # or type = "Impulse", with time, body and delta_v
+    type = "Impact"
+    time = "1 d"
+    body = "B"
+    mass = "500 kg"
+    velocity = "[0, -6, 0] km / s"
+    beta = 2                                      # may be left out: 1
+    point = "[10, 55, 0] m"                       # so may this: through the mass centre
 """
 
 import inspect
@@ -64,7 +73,7 @@ from typing import Any
 from astropy.time import Time
 from astropy.units import Quantity
 
-from binaryast import coefficients, gravity, shapes, unions
+from binaryast import coefficients, gravity, impulses, shapes, unions
 from binaryast.adaptive import Adaptive
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError, ScenarioError, StorageError, did_you_mean
@@ -114,9 +123,13 @@ PLAIN = (  # arguments that have no unit
     *("density_ratio", "outer", "inner", "file", "facets", "unit", "mend"),
     *("accuracy", "near", "far", "parallel"),
     *("order", "scheme", "method", "rtol", "atol", "tolerance"),
+    *("body", "beta"),
     *("eccentricity", "about", "R", "R2", "attitude", "epoch", "frame"),
 )
 EXAMPLES = {  # what a text with a unit looks like
+    "time": "1 d",
+    "delta_v": "[0, -2.6, 0] mm / s",
+    "point": "[10, 55, 0] m",
     "mass": "2e9 kg",
     "density": "2000 kg / m3",
     "offset": "[60, 0, 0] m",
@@ -155,6 +168,8 @@ class Scenario(Value):
         The accuracy at which the command runs it.
     duration, save_every : Quantity
         How long, and how often to save; ``save_every`` may be None.
+    impulses : tuple of Impulse and Impact
+        In order of time.
     sources : tuple of dict
         ``what``, ``source`` and where known ``uncertainty`` and ``note`` of each number.
     text : str
@@ -169,6 +184,7 @@ class Scenario(Value):
     accuracy: float | None
     duration: Quantity
     save_every: Quantity | None
+    impulses: tuple[impulses.AnyImpulse, ...]
     sources: tuple[dict[str, str], ...] = field(repr=False)
     text: str = field(repr=False)
 
@@ -219,7 +235,7 @@ def loads(text: str, *, name: str, where: str, folder: Path = Path()) -> Scenari
 
 def _scenario(tables: dict[str, Any], name: str, text: str, folder: Path) -> Scenario:
     """Build everything that the tables say."""
-    _known(tables, ("title", "bodies", "gravity", "state", "run", "sources"), "")
+    _known(tables, ("title", "bodies", "gravity", "state", "run", "impulses", "sources"), "")
     _needed(tables, ("bodies", "state", "run"), "")
     bodies = tables["bodies"]
     if not isinstance(bodies, list) or not all(isinstance(body, dict) for body in bodies):
@@ -229,6 +245,7 @@ def _scenario(tables: dict[str, Any], name: str, text: str, folder: Path) -> Sce
     run = _table(tables, "run")
     _known(run, ("duration", "step", "save_every", "accuracy", "integrator"), "run.")
     _needed(run, ("duration",), "run.")
+    duration = _time(run["duration"], "run.duration")
     return Scenario(
         name=name,
         title=_text(tables.get("title", name), "title"),
@@ -236,8 +253,9 @@ def _scenario(tables: dict[str, Any], name: str, text: str, folder: Path) -> Sce
         state=_state(_table(tables, "state"), system),
         integrator=_integrator(run),
         accuracy=_accuracy(run["accuracy"]) if "accuracy" in run else None,
-        duration=_time(run["duration"], "run.duration"),
+        duration=duration,
         save_every=_time(run["save_every"], "run.save_every") if "save_every" in run else None,
+        impulses=_impulses(tables.get("impulses", []), system, float(duration.value)),
         sources=_sources(tables.get("sources", [])),
         text=text,
     )
@@ -345,6 +363,14 @@ def _accuracy(value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise InputError(f"run.accuracy: expected a number such as 1e-8, got {brief(value)}")
     return float(value)
+
+
+def _impulses(tables: Any, system: System, end: float) -> tuple[impulses.AnyImpulse, ...]:
+    """Return the impulses, each of which must be before the end [s]."""
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise InputError(f"impulses: expected tables [[impulses]], got {brief(tables)}")
+    found = [_typed(table, impulses.KINDS, f"impulses[{i}]") for i, table in enumerate(tables)]
+    return impulses.in_order(found, system, end)
 
 
 def _state(table: dict[str, Any], system: System) -> State:

@@ -19,7 +19,7 @@ from binaryast.outcome import (
     overlap,
 )
 from binaryast.progress import keyboard
-from binaryast.schedule import Segment, row_times, schedule
+from binaryast.schedule import Leg, Segment, row_times, schedule
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.units import Floats, quantity
@@ -34,23 +34,22 @@ PIECES = 32  # of a step whose chord touches: its arc may not
 class SolvedRun:
     """One run under way."""
 
-    def __init__(
-        self, system: System, state: State, integrator: RungeKutta, end: float, interval: float | None
-    ) -> None:
-        self.system, self.integrator, self.end = system, integrator, end
+    def __init__(self, system: System, state: State, integrator: RungeKutta, leg: Leg) -> None:
+        self.system, self.integrator, self.begin, self.end = system, integrator, leg.begin, leg.length
         inertial = integrator.is_inertial(len(system.bodies))
         self.equations = equations.continuous(system, frame="inertial" if inertial else "relative")
         self.working = WorkingBodies(system, state)
         self.segments: list[Segment] = []
         if integrator.step is not None:
-            self.segments = schedule(end, integrator.step.value, interval)
+            self.segments = schedule(leg, integrator.step.value)
             self.times = np.array([0.0, *self._times_of_rows()])
         else:
-            self.times = row_times(end, interval)
+            self.times = row_times(leg)
         self.y = self.equations.from_state(_about(self.working.origin, state))
         self.rows = [self.y]
         self.watch = Watch()
         self.ended, self.message = "completed", ""
+        self.pressed: list[int] = []
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
         if touching := coinciding(system, state.si.position) or self._touching(self.y, self.y):
             raise overlap(system, touching - 1, state.si.position)
@@ -69,15 +68,15 @@ class SolvedRun:
 
     def go(self, show: Callable[[float], None]) -> None:
         """Follow the motion as far as it goes."""
-        with keyboard() as pressed, np.errstate(all="ignore"):  # SciPy's own arithmetic, on its way to give up
+        with keyboard() as self.pressed, np.errstate(all="ignore"):  # SciPy's own arithmetic, on its way to give up
             for solver in self._solvers():
                 while solver.status == "running" and self.ended == "completed":
                     began = time.perf_counter()
                     self._step(solver)
                     self.wall_time += time.perf_counter() - began
                     show(self.elapsed)
-                    if pressed and self.ended == "completed" and self.elapsed < self.end:
-                        self.ended, self.message = "interrupted", interruption_message(self.elapsed)
+                    if self.pressed and self.ended == "completed" and self.elapsed < self.end:
+                        self.ended, self.message = "interrupted", interruption_message(self.begin + self.elapsed)
                 if self.ended != "completed":
                     break
         if self.times[len(self.rows) - 1] != self.elapsed:  # what ended the run is not one of its rows
@@ -115,14 +114,14 @@ class SolvedRun:
             self._look(end, y)
         except Exception as error:  # of SciPy, or what a user's potential raises
             self.elapsed, self.y = float(self.times[len(self.rows) - 1]), self.rows[-1]
-            self.ended, self.message = "failed", f"{error}; the last good row is at {self.elapsed:g} s"
+            self.ended, self.message = "failed", f"{error}; the last good row is at {self.begin + self.elapsed:g} s"
             return
         self.y, self.elapsed = y, end
         self.steps += 1
         if len(self.rows) < len(self.times) and self.times[len(self.rows)] == end:
             self.rows.append(y)
         if touched:
-            self.ended, self.message = "contact", contact_message(self.system, touched - 1, end)
+            self.ended, self.message = "contact", contact_message(self.system, touched - 1, self.begin + end)
 
     def _look(self, when: float, y: Floats) -> None:
         """Take in what is measured; raise where it is not a number, or an attitude no rotation at all."""
@@ -166,15 +165,16 @@ class SolvedRun:
             potential_energy=np.array([self.equations.invariants(row).potential_energy for row in self.rows]),
         )
         return Outcome(
-            time=times,
+            time=self.begin + times,
             motion=motion,
             watch=self.watch,
-            closest_time=self.closest_time,
+            closest_time=self.begin + self.closest_time,
             status=self.ended,
             message=self.message,
             steps=self.steps,
             step=self.segments[0].step if self.segments else self.elapsed / max(self.steps, 1),
             wall_time=self.wall_time,
+            pressed=bool(self.pressed),
         )
 
 

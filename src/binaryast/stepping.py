@@ -39,8 +39,10 @@ def turn_error(name: str, spin: float, integrator: Stepping, step: float) -> Ste
 class SteppedRun:
     """One run under way."""
 
-    def __init__(self, system: System, state: State, integrator: Stepping, segments: list[Segment]) -> None:
-        self.system, self.integrator, self.segments = system, integrator, segments
+    def __init__(
+        self, system: System, state: State, integrator: Stepping, segments: list[Segment], begin: float = 0.0
+    ) -> None:
+        self.system, self.integrator, self.segments, self.begin = system, integrator, segments, begin
         inertial = integrator.is_inertial(len(system.bodies))
         self.kernel, self.shares = integrator.kernel(inertial=inertial), integrator.shares.shares
         self.working = working.of(system, state, inertial=inertial)
@@ -215,27 +217,29 @@ class SteppedRun:
         rows, times = np.concatenate(self.rows), np.concatenate(self.times)
         ended, message = self._end()
         return Outcome(
-            time=times,
+            time=self.begin + times,
             motion=self.working.from_rows(rows, times),
             watch=self.watch,
-            closest_time=self.closest_time,
+            closest_time=self.begin + self.closest_time,
             status=ended,
             message=message,
             steps=self.steps,
-            step=self.segments[0].step,
+            step=self.segments[0].step if self.segments else 0.0,
             wall_time=self.wall_time,
+            pressed=bool(self.pressed),
         )
 
     def _end(self) -> tuple[str, str]:
         """Return the status and what there is to say about it."""
+        now = self.begin + self.elapsed
         if self.pressed and self.elapsed < self.end * (1 - SLACK):
-            return "interrupted", interruption_message(self.elapsed)
+            return "interrupted", interruption_message(now)
         if self.code >= status.CONTACT:
-            return "contact", contact_message(self.system, self.code - status.CONTACT, self.elapsed)
+            return "contact", contact_message(self.system, self.code - status.CONTACT, now)
         if self.code == status.NOT_FINITE:
             what = "positions, momenta or gravity are not numbers any more"
             reason = self.raised or not_finite_message(what, self.system)
-            return "failed", f"{reason}; the last good row is at {self.elapsed:g} s"
+            return "failed", f"{reason}; the last good row is at {now:g} s"
         if self.code != status.COMPLETED:
             return "failed", str(self._turn_error())
         return "completed", ""

@@ -5,6 +5,7 @@ import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex, overload
 
@@ -15,6 +16,7 @@ from scipy.spatial.transform import Rotation
 
 from binaryast import storage
 from binaryast.errors import CheckError, InputError, StepWarning
+from binaryast.impulses import AnyImpulse
 from binaryast.integrators import Integrator
 from binaryast.rotations import ROTATION_TOLERANCE
 from binaryast.state import RelativeState, State
@@ -98,6 +100,12 @@ class Trajectory(Value):
         Of a run for which an accuracy was asked: that, an estimate of the error at the end (of the position relative to
         the distance, and of the attitudes of all bodies [rad], the largest), None where it ended early, and why the
         integrator was picked.
+    impulses : tuple of Impulse and Impact
+        By which the motion was changed, in order of time; after an early end there may be some that were not reached.
+        Then figures are the largest of all legs, errors of energy and momentum from the start of each leg, and an
+        accuracy is that of each leg; ``integrator`` is that of the last.
+    legs : tuple of Trajectory
+        The rows between impulses; the run itself where there are none.
     integrator, system, epoch, frame, provenance
         What was run, and on what.
     si : TrajectoryFloats
@@ -127,6 +135,7 @@ class Trajectory(Value):
     accuracy: float | None = None
     estimated_error: float | None = None
     choice: str = ""
+    impulses: tuple[AnyImpulse, ...] = ()
 
     def __post_init__(self) -> None:
         for array in self.si:
@@ -177,6 +186,12 @@ class Trajectory(Value):
         if not len(self.si.time[index]):
             raise IndexError(f"run[{index.start}:{index.stop}] has no rows: there are {len(self)}")
         return replace(self, si=TrajectoryFloats(*(array[index] for array in self.si)))
+
+    @property
+    def legs(self) -> "tuple[Trajectory, ...]":
+        """The rows between impulses, where the same time comes twice; their figures remain those of the whole run."""
+        begins = [0, *(np.flatnonzero(np.diff(self.si.time) == 0) + 1).tolist(), len(self)]
+        return tuple(self._rows(slice(begin, end)) for begin, end in pairwise(begins))
 
     @property
     def time(self) -> Quantity:
@@ -336,6 +351,7 @@ class Trajectory(Value):
             f"  {reach} in {self.steps} steps of {self.step.value:g} s{average}, {len(self)} rows kept; "
             f"{self.wall_time.value:.2g} s{speed}",
             *self._distances(),
+            *(f"  {line}" for line in self._kicks()),
             f"  largest errors: energy {self.max_relative_energy_error:.4e} of |E0| "
             f"({self.max_energy_error_over_potential:.2e} of |U0|), "
             f"momentum angular {self.max_relative_angular_momentum_error:.1e}, "
@@ -351,6 +367,16 @@ class Trajectory(Value):
             known = "not known" if size is None else f"at most {size:.1e} of G m1 m2/r"
             lines.append(f"  next degrees of gravity: {known}")
         return "\n".join(lines)
+
+    def _kicks(self) -> list[str]:
+        """Return a line for each impulse: when, on which body, and by how much its velocity changed."""
+        lines = []
+        for impulse in self.impulses:
+            name = self.system.names[self.system.index(impulse.body)]
+            speed = float(np.linalg.norm(impulse.velocity_change(self.system).value))
+            after = span(impulse.time.value) + (", not reached" if impulse.time.value > self.si.time[-1] else "")
+            lines.append(f"{type(impulse).__name__} on {name} after {after}: its velocity changes by {speed:.5g} m/s")
+        return lines
 
     def _distances(self) -> list[str]:
         """Return what the summary says of distances: of a pair, or of each other body from the primary."""
@@ -439,6 +465,7 @@ class Trajectory(Value):
         figures = {name: getattr(self, name) for name in FIGURES}
         attributes |= {name: getattr(figure, "value", figure) for name, figure in figures.items() if figure is not None}
         values = {"system": self.system, "integrator": self.integrator, "epoch": self.epoch}
+        values |= {"impulses": self.impulses} if self.impulses else {}
         return storage.write(
             storage.as_path(path), storage.Content(datasets, attributes, values, self.provenance), force=force
         )
@@ -480,6 +507,7 @@ class Trajectory(Value):
                 wall_time=quantity(float(attributes["wall_time"]), "s"),
                 provenance=content.provenance,
                 choice=str(attributes["choice"]),
+                impulses=content.values.get("impulses", ()),
                 **{
                     name: quantity(attributes[name], unit) if unit else attributes[name]
                     for name, unit in FIGURES.items()

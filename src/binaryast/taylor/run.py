@@ -10,7 +10,7 @@ from binaryast.integrators import Taylor
 from binaryast.kernels.bodies import layout
 from binaryast.outcome import Outcome, Watch, contact_message, interruption_message, not_finite_message, overlap
 from binaryast.progress import keyboard
-from binaryast.schedule import row_times
+from binaryast.schedule import Leg, row_times
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.taylor import compiled
@@ -26,13 +26,14 @@ SMALLEST_STEP = 1e-15  # over the time since the start: smaller ones lead nowher
 class TaylorRun:
     """One run under way."""
 
-    def __init__(self, system: System, state: State, integrator: Taylor, end: float, interval: float | None) -> None:
-        self.system, self.end = system, end
+    def __init__(self, system: System, state: State, integrator: Taylor, leg: Leg) -> None:
+        self.system, self.begin, self.end = system, leg.begin, leg.length
         compiled.heyoka()  # says at once where it is missing
-        self.times = row_times(end, interval)
+        self.times = row_times(leg)
         self.working = WorkingBodies(system, state)
         self.watch = Watch()
         self.ended, self.message = "completed", ""
+        self.pressed: list[int] = []
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
         self.rows = [self._row()]
         self._begin(state)
@@ -52,14 +53,14 @@ class TaylorRun:
 
     def go(self, show: Callable[[float], None]) -> None:
         """Follow the motion as far as it goes."""
-        with keyboard() as pressed:
+        with keyboard() as self.pressed:
             while self.elapsed < self.end and self.ended == "completed":
                 began = time.perf_counter()
                 self._step()
                 self.wall_time += time.perf_counter() - began
                 show(self.elapsed)
-                if pressed and self.ended == "completed" and self.elapsed < self.end:
-                    self.ended, self.message = "interrupted", interruption_message(self.elapsed)
+                if self.pressed and self.ended == "completed" and self.elapsed < self.end:
+                    self.ended, self.message = "interrupted", interruption_message(self.begin + self.elapsed)
         if self.times[len(self.rows) - 1] != self.elapsed:  # what ended the run is not one of its rows
             self.times = np.append(self.times[: len(self.rows)], self.elapsed)
             self._put(self.y)
@@ -79,7 +80,7 @@ class TaylorRun:
                 self.rows.append(self._row())
         except InputError as error:
             del self.rows[saved:]
-            self.ended, self.message = "failed", f"{error}; the last good row is at {self.elapsed:g} s"
+            self.ended, self.message = "failed", f"{error}; the last good row is at {self.begin + self.elapsed:g} s"
             return
         self.y, self.elapsed = y, end
         self.steps += 1
@@ -87,7 +88,7 @@ class TaylorRun:
             self._look(end, y)
             self.rows.append(self._row())
         if touched:
-            self.ended, self.message = "contact", contact_message(self.system, touched - 1, end)
+            self.ended, self.message = "contact", contact_message(self.system, touched - 1, self.begin + end)
 
     def _advance(self) -> float:
         """Have heyoka take a step, up to the end of the run; return the time that it reaches."""
@@ -147,13 +148,14 @@ class TaylorRun:
         """Return what has been computed."""
         times = self.times[: len(self.rows)].copy()
         return Outcome(
-            time=times,
+            time=self.begin + times,
             motion=self.working.from_rows(np.array(self.rows), times),
             watch=self.watch,
-            closest_time=self.closest_time,
+            closest_time=self.begin + self.closest_time,
             status=self.ended,
             message=self.message,
             steps=self.steps,
             step=self.elapsed / max(self.steps, 1),
             wall_time=self.wall_time,
+            pressed=bool(self.pressed),
         )
