@@ -19,6 +19,7 @@ from binaryast.units import Floats, brief
 from binaryast.working.base import coinciding
 
 CHUNK_SECONDS = 0.1  # between two looks at the keyboard
+GROWTH, MOST_AT_ONCE = 8, 500_000  # of steps between two looks: a clock may stand still for a moment
 PARTS, LEVELS = 16, 3  # of a step in which bodies seem to touch: 16 parts, of which one in 16, and so on
 
 
@@ -103,7 +104,7 @@ class SteppedRun:
                 self._look_closer(segment, rows)
             spent = time.perf_counter() - began
             self.wall_time += spent
-            chunk = max(1, min(100 * count, int(count * CHUNK_SECONDS / max(spent, 1e-6))))
+            chunk = max(1, min(GROWTH * count, MOST_AT_ONCE, int(count * CHUNK_SECONDS / max(spent, 1e-6))))
             show(self.elapsed + watch[loop.STEPS] * segment.step)
         if self.integrator.changed is not None:
             watch[loop.ENERGY_ERROR] = energy_error
