@@ -19,7 +19,7 @@ from binaryast.units import Floats, brief
 from binaryast.working.base import coinciding
 
 CHUNK_SECONDS = 0.1  # between two looks at the keyboard
-GROWTH, MOST_AT_ONCE = 8, 500_000  # of steps between two looks: a clock may stand still for a moment
+GROWTH, MOST_AT_ONCE = 8, 500_000  # of steps between two looks, whatever the clock says
 PARTS, LEVELS = 16, 3  # of a step in which bodies seem to touch: 16 parts, of which one in 16, and so on
 
 
