@@ -2,7 +2,7 @@
 
 For each system and accuracy: what was asked, estimated and true, by which method and step, and at what cost. The truth
 is a Taylor series by heyoka at 1e-18, whose gravity is written apart from ours; where there is none, and over so many
-orbits that its round-off shows, a run of order 10 with steps a third as long as needed.
+orbits that its round-off shows, a run of order 10 with steps a sixth as long as needed.
 """
 
 import sys

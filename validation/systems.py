@@ -6,42 +6,38 @@ import numpy as np
 import binaryast as ba
 
 
-def tumbling_pair() -> tuple[ba.System, ba.State]:
-    """Two triaxial bodies in full tumble on an inclined, eccentric orbit; the secondary's motion is chaotic."""
-    primary = ba.RigidBody("A", ba.Ellipsoid(420 * u.m, 400 * u.m, 330 * u.m), density=2400 * u.kg / u.m**3)
-    secondary = ba.RigidBody("B", ba.Ellipsoid(100 * u.m, 80 * u.m, 60 * u.m), density=2400 * u.kg / u.m**3)
-    system = ba.System([primary, secondary])
-    spins = [[3e-5, -2e-5, 7.5e-4], [-4e-5, 6e-5, 1.5e-4]] * u.rad / u.s
+def two_ellipsoids(
+    one: tuple[float, float, float], other: tuple[float, float, float], a: float, e: float, spins: list[list[float]]
+) -> tuple[ba.System, ba.State]:
+    """Return two ellipsoids of semi-axes [m] on an inclined orbit, of spins [rad/s]."""
+    bodies = [
+        ba.RigidBody(name, ba.Ellipsoid(*(axes * u.m)), density=2400 * u.kg / u.m**3)
+        for name, axes in (("A", np.array(one)), ("B", np.array(other)))
+    ]
+    system = ba.System(bodies)
     state = ba.State.from_elements(
         system,
-        semi_major_axis=1150 * u.m,
-        eccentricity=0.08,
+        semi_major_axis=a * u.m,
+        eccentricity=e,
         inclination=20 * u.deg,
         longitude_of_ascending_node=50 * u.deg,
         argument_of_periapsis=70 * u.deg,
         true_anomaly=30 * u.deg,
-        spins=list(spins),
+        spins=list(spins * u.rad / u.s),
     )
     return system, state
+
+
+def tumbling_pair() -> tuple[ba.System, ba.State]:
+    """Two triaxial bodies in full tumble on an inclined, eccentric orbit; the secondary's motion is chaotic."""
+    spins = [[3e-5, -2e-5, 7.5e-4], [-4e-5, 6e-5, 1.5e-4]]
+    return two_ellipsoids((420.0, 400.0, 330.0), (100.0, 80.0, 60.0), 1150.0, 0.08, spins)
 
 
 def coupled_pair() -> tuple[ba.System, ba.State]:
     """Two long bodies in a slow tumble that pass near each other: each turns the other, and no spin is fast."""
-    primary = ba.RigidBody("A", ba.Ellipsoid(500 * u.m, 300 * u.m, 250 * u.m), density=2400 * u.kg / u.m**3)
-    secondary = ba.RigidBody("B", ba.Ellipsoid(300 * u.m, 180 * u.m, 120 * u.m), density=2400 * u.kg / u.m**3)
-    system = ba.System([primary, secondary])
-    spins = [[1e-4, -1e-4, 2e-4], [-1e-4, 1.5e-4, 2e-4]] * u.rad / u.s
-    state = ba.State.from_elements(
-        system,
-        semi_major_axis=1300 * u.m,
-        eccentricity=0.3,
-        inclination=20 * u.deg,
-        longitude_of_ascending_node=50 * u.deg,
-        argument_of_periapsis=70 * u.deg,
-        true_anomaly=30 * u.deg,
-        spins=list(spins),
-    )
-    return system, state
+    spins = [[1e-4, -1e-4, 2e-4], [-1e-4, 1.5e-4, 2e-4]]
+    return two_ellipsoids((500.0, 300.0, 250.0), (300.0, 180.0, 120.0), 1300.0, 0.3, spins)
 
 
 def nearly_round(share: float) -> tuple[ba.System, ba.State]:

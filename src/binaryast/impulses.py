@@ -1,5 +1,6 @@
 """Impulses: sudden changes of a body's velocity and spin, by a kick or by something that hits it."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
@@ -16,8 +17,54 @@ from binaryast.values import Value
 ON_SURFACE = 1e-6  # relative: a point computed to lie on the sphere that holds a body may be out of it by round-off
 
 
+class Kick(Value, ABC):
+    """What is sudden: at a time, of a body's velocity and spin."""
+
+    time: Quantity
+    body: str | int
+
+    def check(self, system: System) -> None:
+        """Raise where it cannot happen to this system."""
+        system.index(self.body)
+
+    @abstractmethod
+    def velocity_change(self, system: System) -> Quantity:
+        """Return by how much the velocity of its body changes (3,), inertial."""
+
+    def spin_change(self, state: State, system: System) -> Floats:  # noqa: ARG002
+        """Return by how much the spin of its body changes (3,), in its own frame [rad/s]."""
+        return np.zeros(3)
+
+    def apply(self, state: State, system: System) -> State:
+        """Return the state after it.
+
+        Parameters
+        ----------
+        state : State
+            Just before.
+        system : System
+            Whose state it is.
+
+        Returns
+        -------
+        State
+            The same places, attitudes and epoch.
+
+        Raises
+        ------
+        InputError
+            For a body that the system does not have, or a point that is none of its surface or of a point mass.
+        """
+        self.check(system)
+        index = system.index(self.body)
+        velocity, spin = state.si.velocity.copy(), state.si.spin.copy()
+        velocity[index] += self.velocity_change(system).value
+        spin[index] += self.spin_change(state, system)
+        return replace(state, velocity=quantity(velocity, "m / s"), spin=quantity(spin, "rad / s"))
+
+
 @dataclass(frozen=True, eq=False)
-class Impulse(Value):
+class Impulse(Kick):
     """A sudden change of the velocity of a body's mass centre; its spin stays as it is.
 
     Parameters
@@ -54,40 +101,13 @@ class Impulse(Value):
             delta_v=quantity(to_si(self.delta_v, "m / s", "delta_v", shape=(3,)), "m / s"),
         )
 
-    def check(self, system: System) -> None:
-        """Raise where it cannot happen to this system."""
-        system.index(self.body)
-
     def velocity_change(self, system: System) -> Quantity:  # noqa: ARG002
         """Return by how much the velocity of its body changes (3,), inertial."""
         return self.delta_v
 
-    def apply(self, state: State, system: System) -> State:
-        """Return the state after it.
-
-        Parameters
-        ----------
-        state : State
-            Just before.
-        system : System
-            Whose state it is.
-
-        Returns
-        -------
-        State
-            The same places, attitudes and epoch.
-
-        Raises
-        ------
-        InputError
-            For a body that the system does not have.
-        """
-        self.check(system)
-        return _kicked(state, system.index(self.body), self.delta_v.value, np.zeros(3))
-
 
 @dataclass(frozen=True, eq=False)
-class Impact(Value):
+class Impact(Kick):
     """Something that hits a body and changes its velocity, and its spin where it hits off the mass centre.
 
     The momentum of the body changes by beta m v, and its angular momentum about its mass centre by r x beta m v, where
@@ -161,33 +181,13 @@ class Impact(Value):
                 f"{body.bounding_radius:g} m: expected a point of it, in the body's frame"
             )
 
-    def apply(self, state: State, system: System) -> State:
-        """Return the state after it.
-
-        Parameters
-        ----------
-        state : State
-            Just before.
-        system : System
-            Whose state it is.
-
-        Returns
-        -------
-        State
-            The same places, attitudes and epoch.
-
-        Raises
-        ------
-        InputError
-            For a body that the system does not have, or a point that is none of its surface or of a point mass.
-        """
-        self.check(system)
+    def spin_change(self, state: State, system: System) -> Floats:
+        """Return by how much the spin of its body changes (3,), in its own frame [rad/s]."""
         index = system.index(self.body)
         body = system.bodies[index]
-        delta_spin = np.zeros(3)
-        if self.point is not None and not body.is_point:
-            delta_spin = np.cross(self.point.value, state.si.attitude[index].T @ self._momentum) / body.si.moments
-        return _kicked(state, index, self.velocity_change(system).value, delta_spin)
+        if self.point is None or body.is_point:
+            return np.zeros(3)
+        return np.asarray(np.cross(self.point.value, state.si.attitude[index].T @ self._momentum) / body.si.moments)
 
     @property
     def _momentum(self) -> Floats:
@@ -226,11 +226,3 @@ def in_order(impulses: Any, system: System, end: float) -> tuple[AnyImpulse, ...
                 "run longer, or leave it out"
             )
     return tuple(sorted(impulses, key=lambda impulse: float(impulse.time.value)))
-
-
-def _kicked(state: State, body: int, delta_v: Floats, delta_spin: Floats) -> State:
-    """Return a state with one body's velocity and spin changed."""
-    velocity, spin = state.si.velocity.copy(), state.si.spin.copy()
-    velocity[body] += delta_v
-    spin[body] += delta_spin
-    return replace(state, velocity=quantity(velocity, "m / s"), spin=quantity(spin, "rad / s"))

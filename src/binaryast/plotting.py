@@ -15,8 +15,9 @@ from binaryast.analysis import libration_angle, mean_orbit_axes
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError
 from binaryast.storage import as_path, refuse, replace_whole
+from binaryast.summaries import joined
 from binaryast.surface_plots import surface as surface  # a public function of this module
-from binaryast.trajectory import Trajectory, joined
+from binaryast.trajectory import Trajectory
 from binaryast.units import Floats, brief
 
 PRIMARY, SECONDARY, DARK = "#1f4e79", "#c8553d", "#333333"

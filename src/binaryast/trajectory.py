@@ -2,7 +2,6 @@
 
 import operator
 import warnings
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
@@ -14,14 +13,14 @@ from astropy.time import Time, TimeDelta
 from astropy.units import Quantity
 from scipy.spatial.transform import Rotation
 
-from binaryast import storage
+from binaryast import storage, summaries
 from binaryast.errors import CheckError, InputError, StepWarning
 from binaryast.impulses import AnyImpulse
 from binaryast.integrators import Integrator
 from binaryast.rotations import ROTATION_TOLERANCE
 from binaryast.state import RelativeState, State
 from binaryast.system import System
-from binaryast.units import Floats, brief, checked, numbers, quantity, span
+from binaryast.units import Floats, brief, checked, numbers, quantity
 from binaryast.values import Value
 
 if TYPE_CHECKING:
@@ -341,53 +340,7 @@ class Trajectory(Value):
 
     def summary(self) -> str:
         """Return a few lines: how the run ended, its cost, and how well it conserved what it should."""
-        reach = span(self.si.time[-1])
-        if self.si.time[0] > 0:
-            reach = f"rows from {span(self.si.time[0])} to {reach} of a run"
-        speed = f", {self.wall_time.value / self.steps * 1e6:.2f} us each" if self.steps else ""
-        average = " on average" if self.integrator.adaptive else ""
-        lines = [
-            f"{joined(self.system.names)}: {self.status}" + (f": {self.message}" if self.message else ""),
-            f"  {reach} in {self.steps} steps of {self.step.value:g} s{average}, {len(self)} rows kept; "
-            f"{self.wall_time.value:.2g} s{speed}",
-            *self._distances(),
-            *(f"  {line}" for line in self._kicks()),
-            f"  largest errors: energy {self.max_relative_energy_error:.4e} of |E0| "
-            f"({self.max_energy_error_over_potential:.2e} of |U0|), "
-            f"momentum angular {self.max_relative_angular_momentum_error:.1e}, "
-            f"linear {self.max_relative_linear_momentum_error:.1e}, "
-            f"rotation {self.max_rotation_error:.1e}",
-        ]
-        if self.accuracy is not None:
-            error = "not known" if self.estimated_error is None else f"{self.estimated_error:.1e}"
-            lines.append(f"  accuracy {self.accuracy:g} asked, error at the end {error} as estimated")
-            lines.append(f"  {self.choice}")
-        if any(pair.gravity.cut_at is not None for pair in self.system.pairs):
-            size = self.max_next_degree_term
-            known = "not known" if size is None else f"at most {size:.1e} of G m1 m2/r"
-            lines.append(f"  next degrees of gravity: {known}")
-        return "\n".join(lines)
-
-    def _kicks(self) -> list[str]:
-        """Return a line for each impulse: when, on which body, and by how much its velocity changed."""
-        lines = []
-        for impulse in self.impulses:
-            name = self.system.names[self.system.index(impulse.body)]
-            speed = float(np.linalg.norm(impulse.velocity_change(self.system).value))
-            after = span(impulse.time.value) + (", not reached" if impulse.time.value > self.si.time[-1] else "")
-            lines.append(f"{type(impulse).__name__} on {name} after {after}: its velocity changes by {speed:.5g} m/s")
-        return lines
-
-    def _distances(self) -> list[str]:
-        """Return what the summary says of distances: of a pair, or of each other body from the primary."""
-        closest = f"closest {self.closest_approach.value:.6g} m after {span(self.closest_approach_time.value)}"
-        names = self.system.names
-        lines = []
-        for i in range(1, len(names)):
-            d = self.distance(0, i).value
-            of = "" if len(names) == 2 else f" of {names[i]} from {names[0]}"
-            lines.append(f"  separation{of} {d[0]:.6g} m at the start, {d[-1]:.6g} m at the end")
-        return [f"{lines[0]}, {closest}"] if len(names) == 2 else [*lines, f"  any two: {closest}"]
+        return summaries.summary(self)
 
     def to_table(self) -> "QTable":
         """Return the run as an astropy table: one row a time, a column a number; attitudes as quaternions, scalar last.
@@ -522,11 +475,6 @@ class Trajectory(Value):
 def _rotation_errors(r: Floats) -> Floats:
     """Return ||I - R^T R|| of matrices (..., 3, 3)."""
     return np.asarray(np.linalg.norm(np.eye(3) - np.swapaxes(r, -1, -2) @ r, axis=(-2, -1)))
-
-
-def joined(names: Sequence[str]) -> str:
-    """Return names as one would say them."""
-    return f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def _floats(datasets: dict[str, Any], count: int) -> TrajectoryFloats:

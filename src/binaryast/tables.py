@@ -1,0 +1,139 @@
+"""Tables of a TOML file: which keys they may have, and their values as the arguments of a constructor."""
+
+import inspect
+from collections.abc import Callable, Iterable
+from datetime import UTC, datetime
+from typing import Any
+
+from astropy.time import Time
+from astropy.units import Quantity
+
+from binaryast.errors import InputError, did_you_mean
+from binaryast.units import brief, parse, quantity, to_si
+
+PLAIN = (  # arguments that have no unit
+    *("weights", "parts", "table", "C", "S", "normalised", "condon_shortley", "turn", "degree"),
+    *("density_ratio", "outer", "inner", "file", "facets", "unit", "mend"),
+    *("accuracy", "near", "far", "parallel"),
+    *("order", "scheme", "method", "rtol", "atol", "tolerance"),
+    *("body", "beta"),
+    *("eccentricity", "about", "R", "R2", "attitude", "epoch", "frame"),
+)
+EXAMPLES = {  # what a text with a unit looks like
+    "time": "1 d",
+    "delta_v": "[0, -2.6, 0] mm / s",
+    "point": "[10, 55, 0] m",
+    "mass": "2e9 kg",
+    "density": "2000 kg / m3",
+    "offset": "[60, 0, 0] m",
+    "X": "[1, 0, 0] km",
+    "velocity": "[[0, 0, 0], [0, 17, 0]] cm / s",
+    "position": "[[0, 0, 0], [1, 0, 0]] km",
+    "spin": "[[0, 0, 1], [0, 0, 1]] deg / min",
+    "spins": "2.26 h",
+    "pole": "10 deg",
+    "inclination": "10 deg",
+    "longitude_of_ascending_node": "10 deg",
+    "argument_of_periapsis": "10 deg",
+    "true_anomaly": "10 deg",
+    "mean_anomaly": "10 deg",
+    "period": "12 h",
+    "V": "[0, 1, 0] m / s",
+    "V2": "[0, 1, 0] m / s",
+    "Omega": "[0, 0, 1] deg / min",
+    "Omega2": "[0, 0, 1] deg / min",
+}
+
+
+def call(function: Callable[..., Any], ready: dict[str, Any], arguments: dict[str, Any], where: str) -> Any:
+    """Call a constructor with arguments from a file, after a look at their names."""
+    parameters = [p for p in inspect.signature(function).parameters.values() if p.name not in ready]
+    check_known(arguments, [p.name for p in parameters], f"{where}.")
+    check_needed(arguments, [p.name for p in parameters if p.default is inspect.Parameter.empty], f"{where}.")
+    given = {key: argument(value, key, f"{where}.{key}") for key, value in arguments.items()}
+    try:
+        return function(**ready, **given)
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def argument(value: Any, key: str, where: str) -> Any:
+    """Return an argument of a constructor: a quantity from its text, lists of them, and what is in `PLAIN` as it is."""
+    if key in PLAIN:
+        return value
+    example = EXAMPLES.get(key, "1 m")
+    if isinstance(value, list) and (key == "spins" or any(isinstance(item, str) for item in value)):
+        return [argument(item, key, f"{where}[{i}]") for i, item in enumerate(value)]
+    if isinstance(value, list) and key == "pole":  # three numbers
+        return value
+    if isinstance(value, list):
+        raise InputError(f'{where}: expected one text with a unit such as "{example}", got {brief(value)}')
+    if value == "synchronous" or (value == "none" and where.startswith("state.spins")):
+        return value
+    return parse(text_of(value, where, example.lstrip("[0123456789., ]")), where, example)
+
+
+def time(value: Any, where: str) -> Quantity:
+    """Return a time that is longer than nothing."""
+    return quantity(to_si(parse(text_of(value, where, "s"), where, "1 s"), "s", where, sign="positive"), "s")
+
+
+def epoch(value: Any) -> Time:
+    """Return an epoch: an ISO date and time, followed by its scale, TDB by default."""
+    if isinstance(value, datetime) and value.tzinfo is not None:
+        value = f"{value.astimezone(UTC).replace(tzinfo=None).isoformat()} UTC"
+    words = str(value).split()
+    scale = words.pop().lower() if len(words) > 1 and words[-1].isalpha() else "tdb"
+    try:
+        return Time("T".join(words), scale=scale)
+    except Exception:  # astropy has several, none of them short
+        raise InputError(
+            f'state.epoch: {brief(value)!r} is no date: expected such as "2022-09-26T23:14:24 UTC"'
+        ) from None
+
+
+def table_of(tables: dict[str, Any], key: str, where: str = "") -> dict[str, Any]:
+    """Return a table, empty where it is missing."""
+    table = tables.get(key, {})
+    if not isinstance(table, dict):
+        raise InputError(f"{where}{key}: expected a table, got {brief(table)}")
+    return table
+
+
+def text_of(value: Any, where: str, unit: str = "") -> str:
+    """Return a text, with a unit in it where one is named."""
+    if not isinstance(value, str):
+        number = value if isinstance(value, (int, float)) else 1
+        kind = f'a text with a unit such as "{number} {unit}"' if unit else "a text in quotes"
+        raise InputError(f"{where}: expected {kind}, got {brief(value)}")
+    return value
+
+
+def choice(table: dict[str, Any], choices: Iterable[str], where: str) -> str:
+    """Return the value of ``type``, which must be one of the choices."""
+    if "type" not in table:
+        more = "; for single pairs there is [[gravity.pairs]]" if where == "gravity" else ""
+        raise InputError(f"{where}.type is missing: expected one of {', '.join(choices)}{more}")
+    kind = text_of(table["type"], f"{where}.type")
+    if kind not in choices:
+        raise InputError(
+            f"{where}.type: {kind!r} is not known{did_you_mean(kind, choices)}; expected one of {', '.join(choices)}"
+        )
+    return kind
+
+
+def check_known(table: dict[str, Any], keys: Iterable[str], where: str) -> None:
+    """Raise for the first key that is not known, naming the nearest."""
+    keys = list(keys)
+    for key in table:
+        if key not in keys:
+            raise InputError(
+                f"{where}{key}: unknown key{did_you_mean(key, keys)}; known are {', '.join(keys) or 'none'}"
+            )
+
+
+def check_needed(table: dict[str, Any], keys: Iterable[str], where: str) -> None:
+    """Raise for the first key that is missing."""
+    for key in keys:
+        if key not in table:
+            raise InputError(f"{where}{key} is missing")
