@@ -130,12 +130,10 @@ def plan(trials: Trials, end: float, accuracy: float, longest: float) -> Plan:
         raise AccuracyError(
             f"accuracy: {accuracy:g} is not reached after {span(time)} by any method, however short its steps"
         )
-    others = sum(1 for _ in methods(trials)) - 1
-    steps = trials.fastest / best.integrator.step.value
+    count = sum(1 for _ in methods(trials))
     reason = (
-        f"{type(best.integrator).__name__} {best.integrator.shares.name}, cheapest of {others + 1} methods for "
-        f"{accuracy:g} after {span(end)}, by trials over {span(time)}: {steps:.3g} steps in the fastest orbit of "
-        f"{span(trials.fastest)}"
+        f"{type(best.integrator).__name__} {best.integrator.shares.name}, cheapest of {count} methods for "
+        f"{accuracy:g} after {span(end)}, by trials over {span(time)}"
     )
     floor = sensitivity.floor if sensitivity is not None and time == end else None
     return Plan(best.integrator, best.power, best.error, floor, reason)
