@@ -8,6 +8,7 @@ import numpy as np
 from scipy import integrate
 
 from binaryast import equations
+from binaryast.arcs import first_touch
 from binaryast.errors import InputError
 from binaryast.integrators import RungeKutta
 from binaryast.outcome import (
@@ -28,7 +29,6 @@ from binaryast.working.base import coinciding
 from binaryast.working.bodies import WorkingBodies
 
 NEVER_REJECT = 1e200  # a tolerance for fixed steps
-PIECES = 32  # of a step whose chord touches: its arc may not
 
 
 class SolvedRun:
@@ -105,7 +105,9 @@ class SolvedRun:
             if solver.status == "failed":
                 raise InputError(f"SciPy's solver gave up: {message}")
             between = solver.dense_output()
-            end, y, touched = self._way(solver, between)
+            end, y, touched = first_touch(
+                self.elapsed, float(solver.t), self.y, solver.y.copy(), between, self._touching
+            )
             while len(self.rows) < len(self.times) and self.times[len(self.rows)] < end:
                 due = self.times[len(self.rows)]
                 row = between(due)
@@ -132,21 +134,6 @@ class SolvedRun:
             raise InputError("an attitude has left SO(3) altogether: tighten the tolerances")
         if self.watch.look(now.measures):
             self.closest_time = when
-
-    def _way(self, solver: Any, between: Callable[[float], Floats]) -> tuple[float, Floats, int]:
-        """Return where a step ends: at its end, or where two bodies touch on the way, and which pair then does.
-
-        The chord of an arc passes nearer than the arc: only where the chord touches, the arc is followed in pieces.
-        """
-        before, after = self.y, solver.y.copy()
-        if not self._touching(before, after):
-            return float(solver.t), after, 0
-        for when in np.linspace(self.elapsed, solver.t, PIECES + 1)[1:]:
-            y = between(when) if when < solver.t else after
-            if touched := self._touching(before, y):
-                return float(when), y, touched
-            before = y
-        return float(solver.t), after, 0
 
     def _touching(self, before: Floats, after: Floats) -> int:
         """Return which pair touches on the straight way, counted from 1, or 0."""

@@ -5,6 +5,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from binaryast.arcs import first_touch
 from binaryast.errors import InputError
 from binaryast.integrators import Taylor
 from binaryast.kernels.bodies import layout
@@ -19,7 +20,6 @@ from binaryast.units import Floats
 from binaryast.working.base import coinciding
 from binaryast.working.bodies import WorkingBodies
 
-PIECES = 32  # of a step whose chord touches: its arc may not
 SMALLEST_STEP = 1e-15  # over the time since the start: smaller ones lead nowhere
 
 
@@ -72,7 +72,9 @@ class TaylorRun:
         saved = len(self.rows)
         try:
             reached = self._advance()
-            end, y, touched = self._way(reached)
+            end, y, touched = first_touch(
+                self.elapsed, reached, self.y, self.integrator.state.copy(), self._at, self._touching
+            )
             self._look(end, y)
             while len(self.rows) < len(self.times) and self.times[len(self.rows)] < end:
                 due = float(self.times[len(self.rows)])
@@ -120,21 +122,6 @@ class TaylorRun:
             raise InputError(not_finite_message("the energy or another figure is not a number any more", self.system))
         if self.watch.look(measures):
             self.closest_time = when
-
-    def _way(self, reached: float) -> tuple[float, Floats, int]:
-        """Return where a step ends: at its end, or where two bodies touch on the way, and which pair then does.
-
-        The chord of an arc passes nearer than the arc: only where the chord touches, the arc is followed in pieces.
-        """
-        before, after = self.y, self.integrator.state.copy()
-        if not self._touching(before, after):
-            return reached, after, 0
-        for when in np.linspace(self.elapsed, reached, PIECES + 1)[1:]:
-            y = self._at(float(when)) if when < reached else after
-            if touched := self._touching(before, y):
-                return float(when), y, touched
-            before = y
-        return reached, after, 0
 
     def _touching(self, before: Floats, after: Floats) -> int:
         """Return which pair touches on the straight way, counted from 1, or 0."""
