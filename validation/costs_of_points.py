@@ -44,7 +44,7 @@ def points(count: int) -> tuple[ba.System, ba.State]:
 
 def ours(system: ba.System, state: ba.State, integrator: Stepping) -> Callable[[int], None]:
     """Return a function that takes watched steps."""
-    w = working.of(system, state, inertial=integrator.is_inertial(len(system.bodies)))
+    w = working.of(system, state, inertial=integrator.is_inertial(system))
     start = w.state.copy()
 
     def take(count: int) -> None:
@@ -81,10 +81,12 @@ def jobs(count: int) -> dict[str, Job]:
 
 
 @numba.njit
-def repeat_step(repeats: int, step: Any, state: Any, constants: Any, shares: Any, table: Any, parameters: Any) -> None:
+def repeat_step(
+    repeats: int, step: Any, state: Any, constants: Any, shares: Any, table: Any, parameters: Any, external: Any
+) -> None:
     """Take unwatched steps."""
     for _ in range(repeats):
-        step(state, constants, shares, table, parameters, STEP)
+        step(state, constants, shares, table, parameters, external, STEP)
 
 
 @numba.njit
@@ -116,7 +118,10 @@ def parts(w: Working, kernel: Any, shares: np.ndarray, count: int) -> dict[str, 
     """Return the parts of a watched step in the inertial frame: the step, gravity in it, the watch, contact."""
     start, each = w.state.copy(), 100_000 // count**2
     return {
-        "step": (lambda k: repeat_step(k, kernel, w.state, w.constants, shares, w.attraction, w.parameters), each),
+        "step": (
+            lambda k: repeat_step(k, kernel, w.state, w.constants, shares, w.attraction, w.parameters, w.external),
+            each,
+        ),
         "gravity in it": (lambda k: repeat_gravity(k, w.state, w.constants, w.attraction, w.parameters), each),
         "watch": (lambda k: repeat_watch(k, w.measure, w.state, w.constants), each),
         "contact": (lambda k: repeat_contact(k, w.touching, w.state, w.surfaces, start), each),

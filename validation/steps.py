@@ -35,6 +35,7 @@ def take_steps(
         integrator.shares.shares,
         w.attraction,
         w.parameters,
+        w.external,
         w.constants,
         surfaces,
         w.state,

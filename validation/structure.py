@@ -32,7 +32,7 @@ WEIGHTS = ((1, 4 / 5), (2, -1 / 5), (3, 4 / 105), (4, -1 / 280))  # of order 8: 
 
 def production(system: ba.System, state: ba.State, h: float, *, integrator: Stepping) -> Snapshot:
     """Take one production step."""
-    w = working.of(system, state, inertial=integrator.is_inertial(len(system.bodies)))
+    w = working.of(system, state, inertial=integrator.is_inertial(system))
     take_steps(w, h, 1, integrator=integrator)
     return snapshot(w, h)
 
@@ -191,7 +191,7 @@ def symplectic_defect(step: Map, s: Setting) -> float:
 
 def reversal_error(system: ba.System, state: ba.State, h: float, integrator: Stepping, count: int = 1) -> float:
     """Return how far some steps forward and as many back lead away: of distance, speed, radian and spin."""
-    w = working.of(system, state, inertial=integrator.is_inertial(len(system.bodies)))
+    w = working.of(system, state, inertial=integrator.is_inertial(system))
     start = w.from_rows(w.state[None, : w.row_size], np.zeros(1))
     take_steps(w, h, count, integrator=integrator)
     take_steps(w, -h, count, integrator=integrator)

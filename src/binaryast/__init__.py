@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from binaryast.adaptive import Adaptive
     from binaryast.bodies import RigidBody
     from binaryast.coefficients import InertiaIntegrals, StokesCoefficients
+    from binaryast.elements import Orbit
     from binaryast.errors import BinaryastError
     from binaryast.fields import GravityField, polyhedron_field
     from binaryast.filling import mascons
@@ -28,7 +29,20 @@ if TYPE_CHECKING:
     from binaryast.impulses import Impact, Impulse
     from binaryast.integrators import LGVI, KeplerSplitting, RungeKutta, Splitting, Taylor
     from binaryast.layered import Layered
-    from binaryast.orbits import Orbit
+    from binaryast.perturbations import (
+        Byorp,
+        ExternalPotential,
+        Flyby,
+        Force,
+        Planet,
+        RadiationPressure,
+        Sun,
+        ThirdBody,
+        TidalTorque,
+        Yorp,
+        external_potential,
+        force,
+    )
     from binaryast.polyhedron import Polyhedron
     from binaryast.polyhedron_pair import PolyhedronPair
     from binaryast.polyhedron_point import PolyhedronPoint
@@ -45,9 +59,13 @@ __version__ = _constants.VERSION
 _HOMES = {
     "Adaptive": "adaptive",
     "BinaryastError": "errors",
+    "Byorp": "perturbations",
     "Dumbbell": "shapes",
     "Ellipsoid": "shapes",
     "EllipsoidPair": "gravity",
+    "ExternalPotential": "perturbations",
+    "Flyby": "perturbations",
+    "Force": "perturbations",
     "GravityField": "fields",
     "Impact": "impulses",
     "Impulse": "impulses",
@@ -57,9 +75,10 @@ _HOMES = {
     "Layered": "layered",
     "Multipole": "gravity",
     "MutualGravity": "system",
-    "Orbit": "orbits",
+    "Orbit": "elements",
     "PairPotential": "gravity",
     "Part": "unions",
+    "Planet": "perturbations",
     "Point": "shapes",
     "PointCloud": "shapes",
     "PointMass": "gravity",
@@ -67,6 +86,7 @@ _HOMES = {
     "Polyhedron": "polyhedron",
     "PolyhedronPair": "polyhedron_pair",
     "PolyhedronPoint": "polyhedron_point",
+    "RadiationPressure": "perturbations",
     "RelativeState": "state",
     "RigidBody": "bodies",
     "RungeKutta": "integrators",
@@ -76,11 +96,17 @@ _HOMES = {
     "Splitting": "integrators",
     "State": "state",
     "StokesCoefficients": "coefficients",
+    "Sun": "perturbations",
     "Surface": "surfaces",
     "System": "system",
     "Taylor": "integrators",
+    "ThirdBody": "perturbations",
+    "TidalTorque": "perturbations",
     "Trajectory": "trajectory",
     "Union": "unions",
+    "Yorp": "perturbations",
+    "external_potential": "perturbations",
+    "force": "perturbations",
     "mascons": "filling",
     "pair_potential": "gravity",
     "polyhedron_field": "fields",
@@ -93,9 +119,13 @@ __all__ = [
     "LGVI",
     "Adaptive",
     "BinaryastError",
+    "Byorp",
     "Dumbbell",
     "Ellipsoid",
     "EllipsoidPair",
+    "ExternalPotential",
+    "Flyby",
+    "Force",
     "GravityField",
     "Impact",
     "Impulse",
@@ -107,6 +137,7 @@ __all__ = [
     "Orbit",
     "PairPotential",
     "Part",
+    "Planet",
     "Point",
     "PointCloud",
     "PointMass",
@@ -114,6 +145,7 @@ __all__ = [
     "Polyhedron",
     "PolyhedronPair",
     "PolyhedronPoint",
+    "RadiationPressure",
     "RelativeState",
     "RigidBody",
     "RungeKutta",
@@ -123,17 +155,23 @@ __all__ = [
     "Splitting",
     "State",
     "StokesCoefficients",
+    "Sun",
     "Surface",
     "System",
     "Taylor",
+    "ThirdBody",
+    "TidalTorque",
     "Trajectory",
     "Union",
+    "Yorp",
     "__version__",
     "analysis",
     "catalogue",
     "constants",
     "equations",
     "errors",
+    "external_potential",
+    "force",
     "mascons",
     "pair_potential",
     "plotting",

@@ -46,6 +46,9 @@ class RigidBody(Value):
         Overrides the shape's: three principal moments about the shape's axes, or the inertia matrix (3, 3) about the
         mass centre in the shape's frame. Needed where the shape has none, such as `StokesCoefficients`. The body's
         moments of mass of second degree follow it, those of higher degree remain the shape's.
+    pulls : bool
+        Whether it pulls others. One that does not still feels them: a spacecraft, a grain of dust. It has no part in
+        the energy, the momenta and the barycentre of a system.
 
     Attributes
     ----------
@@ -88,6 +91,7 @@ class RigidBody(Value):
     offset: Quantity = field(repr=False)
     si: BodyFloats = field(repr=False)
     given: MappingProxyType[str, Quantity] = field(repr=False)
+    pulls: bool
 
     def __init__(
         self,
@@ -98,6 +102,7 @@ class RigidBody(Value):
         density: Quantity | None = None,
         gm: Quantity | None = None,
         inertia: Quantity | None = None,
+        pulls: bool = True,
     ) -> None:
         if not isinstance(name, str) or not name.isprintable() or not name.strip() or len(name) > LONGEST_NAME:
             raise InputError(
@@ -105,13 +110,15 @@ class RigidBody(Value):
             )
         if not isinstance(shape, Shape):
             raise InputError(f"RigidBody {name}: shape: expected a shape such as ba.Ellipsoid(...), got {brief(shape)}")
+        if not isinstance(pulls, bool):
+            raise InputError(f"RigidBody {name}: pulls: expected True or False, got {brief(repr(pulls))}")
         given = {"mass": mass, "density": density, "gm": gm}
         given = {key: deepcopy(value) for key, value in given.items() if value is not None}
         if len(given) != 1 and (given or shape.mass is None):
             found = " and ".join(given) or "none"
             raise InputError(f"RigidBody {name}: give exactly one of mass=, density= and gm=, got {found}")
         also = {} if inertia is None else {"inertia": deepcopy(inertia)}
-        self._set(name=name, shape=shape, given=MappingProxyType(given | also))
+        self._set(name=name, shape=shape, pulls=pulls, given=MappingProxyType(given | also))
         mass_si, gm_si = self._masses(**given)
         if not 1 / LARGEST < mass_si < LARGEST:
             raise InputError(f"RigidBody {name}: a mass of {mass_si:g} kg is beyond what can be computed with")
@@ -139,7 +146,7 @@ class RigidBody(Value):
 
     def arguments(self) -> dict[str, Any]:
         """Return the arguments that make this body again, as they were given."""
-        return {"name": self.name, "shape": self.shape, **self.given}
+        return {"name": self.name, "shape": self.shape, **self.given} | ({} if self.pulls else {"pulls": False})
 
     def _masses(
         self, mass: Quantity | None = None, density: Quantity | None = None, gm: Quantity | None = None

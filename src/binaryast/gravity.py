@@ -439,10 +439,10 @@ def pair_potential(function: Function) -> Function:
     """
     from numba.core.errors import NumbaError
 
-    from binaryast.kernels.jit import compile_pair_potential
+    from binaryast.kernels.jit import PAIR_POTENTIAL, compile_for_user
 
     try:
-        return compile_pair_potential(function)
+        return compile_for_user(function, PAIR_POTENTIAL)
     except (NumbaError, TypeError) as error:
         reason = next((line.strip() for line in str(error).splitlines()[1:] if line.strip()), brief(error))
         raise InputError(

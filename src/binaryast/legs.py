@@ -55,10 +55,16 @@ def joined(runs: Sequence[Trajectory], impulses: tuple[AnyImpulse, ...]) -> Traj
 
 
 def _rows(runs: Sequence[Trajectory]) -> TrajectoryFloats:
-    """Return the rows of all legs; each ends exactly when the next begins, not by round-off before or after."""
+    """Return the rows of all legs; each ends exactly when the next begins, not by round-off before or after.
+
+    What came from outside adds up over the legs.
+    """
     rows = TrajectoryFloats(*(np.concatenate(arrays) for arrays in zip(*(run.si for run in runs), strict=True)))
     begins = np.cumsum([len(run) for run in runs])[:-1]
     rows.time[begins - 1] = rows.time[begins]
+    for given in (rows.work, rows.impulse, rows.angular_impulse):
+        for begin in begins:
+            given[begin:] += given[begin - 1]
     return rows
 
 

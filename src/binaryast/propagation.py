@@ -210,8 +210,10 @@ def _interrupted(system: System, state: State, leg: Leg) -> Followed:
 def _to_accuracy(system: System, state: State, leg: Leg, method: Method) -> Followed:
     """Follow a leg to an accuracy: plan, run, estimate, and again with a shorter step where it is not reached."""
     asked, length = method.accuracy, leg.length
-    SteppedRun(system, state, TRY_OUT, schedule(leg, leg.whole))  # what is wrong with the start is said first
-    trials = Trials(system, state)
+    SteppedRun(
+        system, state, TRY_OUT, schedule(leg, leg.whole), leg.begin
+    )  # what is wrong with the start is said first
+    trials = Trials(system, state, leg.begin)
     plan = choosing.plan(trials, length, asked, min(length / 4, leg.interval or length))
     for _ in range(ATTEMPTS):
         run = SteppedRun(system, state, plan.integrator, schedule(leg, plan.integrator.step.value), leg.begin)
@@ -355,9 +357,9 @@ def _figures(system: System, outcome: Outcome) -> dict[str, Any]:
     watch = outcome.watch.array
     energy_error = float(watch[loop.ENERGY_ERROR])
     angular = float(np.linalg.norm(watch[loop.ANGULAR_MOMENTUM : loop.ANGULAR_MOMENTUM + 3]))
-    masses = np.array([body.si.mass for body in system.bodies])
+    masses = np.array([body.si.mass * body.pulls for body in system.bodies])
     velocity = outcome.motion.velocity
-    linear = np.einsum("i,nij->nj", masses, velocity)
+    linear = np.einsum("i,nij->nj", masses, velocity) - outcome.motion.impulse
     of_rows = float(np.linalg.norm(linear - linear[0], axis=1).max())
     speeds = masses @ np.linalg.norm(velocity[0], axis=1)
     return {

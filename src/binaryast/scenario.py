@@ -73,10 +73,10 @@ from astropy.units import Quantity
 from binaryast import coefficients, gravity, impulses, shapes, unions
 from binaryast.adaptive import Adaptive
 from binaryast.bodies import RigidBody
+from binaryast.elements import Orbit
 from binaryast.errors import InputError, ScenarioError, StorageError
 from binaryast.integrators import KINDS, Integrator, Stepping
 from binaryast.layered import Layered
-from binaryast.orbits import Orbit
 from binaryast.polyhedron import Polyhedron
 from binaryast.polyhedron_pair import PolyhedronPair
 from binaryast.polyhedron_point import PolyhedronPoint

@@ -25,7 +25,7 @@ from binaryast.state import State
 from binaryast.system import System
 from binaryast.units import Floats, quantity
 from binaryast.working import Motion
-from binaryast.working.base import coinciding
+from binaryast.working.base import coinciding, nothing_given
 from binaryast.working.bodies import WorkingBodies
 
 NEVER_REJECT = 1e200  # a tolerance for fixed steps
@@ -36,7 +36,7 @@ class SolvedRun:
 
     def __init__(self, system: System, state: State, integrator: RungeKutta, leg: Leg) -> None:
         self.system, self.integrator, self.begin, self.end = system, integrator, leg.begin, leg.length
-        inertial = integrator.is_inertial(len(system.bodies))
+        inertial = integrator.is_inertial(system)
         self.equations = equations.continuous(system, frame="inertial" if inertial else "relative")
         self.working = WorkingBodies(system, state)
         self.segments: list[Segment] = []
@@ -150,6 +150,7 @@ class SolvedRun:
             attitude=np.array([one.R for one in found]),
             spin=np.array([one.Omega for one in found]),
             potential_energy=np.array([self.equations.invariants(row).potential_energy for row in self.rows]),
+            **nothing_given(len(times)),
         )
         return Outcome(
             time=self.begin + times,

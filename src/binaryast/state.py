@@ -9,8 +9,9 @@ from astropy.time import Time
 from astropy.units import Quantity
 
 from binaryast import orbits
+from binaryast.elements import ZERO, Orbit
 from binaryast.errors import InputError
-from binaryast.orbits import ZERO, Orbit, from_orbits, is_celestial
+from binaryast.orbits import from_orbits, is_celestial
 from binaryast.rotations import rotation
 from binaryast.system import System
 from binaryast.units import Floats, as_quantity, brief, quantity, to_si

@@ -5,12 +5,14 @@ from collections.abc import Callable
 from math import inf, pi
 
 import numpy as np
+from astropy.time import TimeDelta
 
 from binaryast import working
 from binaryast.errors import StepError
 from binaryast.integrators import Stepping
 from binaryast.kernels import loop, status
 from binaryast.outcome import Outcome, Watch, contact_message, interruption_message, not_finite_message, overlap
+from binaryast.perturbations.base import Span
 from binaryast.progress import keyboard
 from binaryast.schedule import SLACK, Segment
 from binaryast.state import State
@@ -44,10 +46,14 @@ class SteppedRun:
         self, system: System, state: State, integrator: Stepping, segments: list[Segment], begin: float = 0.0
     ) -> None:
         self.system, self.integrator, self.segments, self.begin = system, integrator, segments, begin
-        inertial = integrator.is_inertial(len(system.bodies))
-        self.kernel, self.shares = integrator.kernel(inertial=inertial), integrator.shares.shares
-        self.working = working.of(system, state, inertial=inertial)
+        inertial = integrator.is_inertial(system)
+        disturbed = bool(system.perturbations)
+        self.kernel = integrator.kernel(inertial=inertial, disturbed=disturbed)
+        self.shares = integrator.shares.shares
         self.end = sum(segment.steps * segment.step for segment in segments)
+        epoch = None if state.epoch is None else state.epoch - TimeDelta(begin, format="sec")
+        span = Span(begin, begin + self.end, epoch, state.frame)
+        self.working = working.of(system, state, inertial=inertial, span=span if disturbed else None)
         self.watch = Watch()
         self.rows: list[Floats] = [self._row()]
         self.times: list[Floats] = [np.zeros(1)]
@@ -114,7 +120,9 @@ class SteppedRun:
     def _change(self, shares: Floats, step: float) -> None:
         """Change the variables of the working state, or change them back."""
         w = self.working
-        code = self.kernel(w.state, w.constants, np.ascontiguousarray(shares), w.attraction, w.parameters, step)
+        code = self.kernel(
+            w.state, w.constants, np.ascontiguousarray(shares), w.attraction, w.parameters, w.external, step
+        )
         self.code = self.code or code
 
     def _change_back(self, shares: Floats, segment: Segment) -> None:
@@ -181,6 +189,7 @@ class SteppedRun:
                 self.shares,
                 w.attraction,
                 w.parameters,
+                w.external,
                 w.constants,
                 surfaces,
                 w.state,
@@ -193,7 +202,7 @@ class SteppedRun:
             )
         except Exception as error:  # whatever the user's function raises, in the middle of a step
             w.state[: w.before.size] = w.before
-            self.raised = f"the potential raised {type(error).__name__}: {brief(error)}"
+            self.raised = f"a potential or a force raised {type(error).__name__}: {brief(error)}"
             return status.NOT_FINITE
         return code
 
@@ -238,7 +247,7 @@ class SteppedRun:
         if self.code >= status.CONTACT:
             return "contact", contact_message(self.system, self.code - status.CONTACT, now)
         if self.code == status.NOT_FINITE:
-            what = "positions, momenta or gravity are not numbers any more"
+            what = "positions, momenta, gravity or a force are not numbers any more"
             reason = self.raised or not_finite_message(what, self.system)
             return "failed", f"{reason}; the last good row is at {now:g} s"
         if self.code != status.COMPLETED:

@@ -11,6 +11,7 @@ from astropy.units import Quantity
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError, did_you_mean
 from binaryast.gravity import Gravity, SecondDegree
+from binaryast.perturbations import Perturbation
 from binaryast.rotations import rotation
 from binaryast.units import Floats, brief, quantity, to_si
 from binaryast.values import Value
@@ -68,11 +69,15 @@ class System(Value):
     gravity : Gravity, mapping or sequence
         How the bodies attract: one model for every pair, `SecondDegree` by default; or a table of models by pairs of
         names, where ``"others"`` stands for the pairs that are not named; or a sequence in the order of `pairs`.
+    perturbations : sequence of Perturbation
+        What else acts: `Sun`, `Planet`, `Flyby`, `ThirdBody`, `TidalTorque`, `Yorp`, `Byorp`, `RadiationPressure`, or
+        an `ExternalPotential` or a `Force` of your own.
 
     Attributes
     ----------
     pairs : tuple of Pair
-        Index of the primary and of the secondary, gravity and its parameters, for (0, 1), (0, 2), .., (1, 2), ...
+        Index of the primary and of the secondary, gravity and its parameters, for (0, 1), (0, 2), .., (1, 2), ...;
+        there is none of two bodies that do not pull.
 
     Raises
     ------
@@ -100,12 +105,15 @@ class System(Value):
 
     bodies: Sequence[RigidBody]
     gravity: Any = field(default_factory=SecondDegree)
+    perturbations: Sequence[Perturbation] = ()
     pairs: tuple[Pair, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         bodies = _checked_bodies(self.bodies)
         self._set(bodies=bodies)
-        indices = list(combinations(range(len(bodies)), 2))
+        self._set(perturbations=_checked_perturbations(self.perturbations, bodies))
+        count = range(len(bodies))
+        indices = [(i, j) for i, j in combinations(count, 2) if bodies[i].pulls or bodies[j].pulls]
         models = [self.gravity] * len(indices)
         if isinstance(self.gravity, Mapping):
             models = _models_by_names(self.gravity, [(bodies[i].name, bodies[j].name) for i, j in indices])
@@ -185,12 +193,15 @@ class System(Value):
         i, j = self.index(primary), self.index(secondary)
         if i == j:
             raise InputError(f"pair: {self.names[i]} twice: expected two bodies")
-        model = next(pair.gravity for pair in self.pairs if {pair.primary, pair.secondary} == {i, j})
-        return System([self.bodies[i], self.bodies[j]], gravity=model)
+        model = next((pair.gravity for pair in self.pairs if {pair.primary, pair.secondary} == {i, j}), None)
+        if model is None:
+            raise InputError(f"pair: {self.names[i]} and {self.names[j]} do not pull: expected one that does")
+        acting = [one for one in self.perturbations if one.concerns((self.names[i], self.names[j]))]
+        return System([self.bodies[i], self.bodies[j]], gravity=model, perturbations=acting)
 
     def _only_pair(self, what: str) -> Pair:
         """Return the pair, or say that there are several."""
-        if len(self.pairs) > 1:
+        if len(self.bodies) > 2:
             names = ", ".join(repr(name) for name in self.names[:2])
             raise InputError(
                 f"{what}: of two bodies; this system has {len(self.bodies)}: choose two, such as system.pair({names})"
@@ -261,6 +272,8 @@ def _checked_bodies(bodies: Any) -> tuple[RigidBody, ...]:
     for body in bodies:
         if not isinstance(body, RigidBody):
             raise InputError(f"System: bodies: expected ba.RigidBody, got {brief(body)}")
+    if not any(body.pulls for body in bodies):
+        raise InputError("System: bodies: none of them pulls: expected at least one with pulls=True")
     if len(bodies) < 2:
         raise InputError(f"System: bodies: expected at least two, primary first; got {len(bodies)}")
     names = [body.name for body in bodies]
@@ -268,6 +281,17 @@ def _checked_bodies(bodies: Any) -> tuple[RigidBody, ...]:
         if names.count(name) > 1:
             raise InputError(f"System: two bodies are called {name!r}: give each its own name")
     return tuple(bodies)
+
+
+def _checked_perturbations(perturbations: Any, bodies: Sequence[RigidBody]) -> tuple[Perturbation, ...]:
+    """Return perturbations as a tuple, after a look at what they are and whether they can act on these bodies."""
+    if isinstance(perturbations, Perturbation) or not isinstance(perturbations, Sequence):
+        raise InputError(f"System: perturbations: expected a list such as [ba.Sun(...)], got {brief(perturbations)}")
+    for perturbation in perturbations:
+        if not isinstance(perturbation, Perturbation):
+            raise InputError(f"System: perturbations: expected such as ba.Sun(...), got {brief(perturbation)}")
+        perturbation.check(bodies)
+    return tuple(perturbations)
 
 
 def _models_by_names(table: Mapping[Any, Any], pairs: list[tuple[str, str]]) -> list[Any]:

@@ -22,13 +22,14 @@ from binaryast.state import RelativeState, State
 from binaryast.system import System
 from binaryast.units import Floats, brief, checked, numbers, quantity
 from binaryast.values import Value
+from binaryast.working.base import nothing_given
 
 if TYPE_CHECKING:
     from astropy.table import QTable
 
 
 class TrajectoryFloats(NamedTuple):
-    """The arrays of a trajectory as plain SI floats."""
+    """The arrays of a trajectory as plain SI floats; the last three are what came from outside since the start."""
 
     time: Floats
     position: Floats
@@ -36,6 +37,9 @@ class TrajectoryFloats(NamedTuple):
     attitude: Floats
     spin: Floats
     potential_energy: Floats
+    work: Floats
+    impulse: Floats
+    angular_impulse: Floats
 
 
 FIGURES = {  # of the whole run, over every step; with their units
@@ -76,6 +80,8 @@ class Trajectory(Value):
         About the barycentre (N,) [J].
     linear_momentum, angular_momentum : Quantity
         (N, 3) [kg m/s], and about the barycentre [kg m2/s].
+    work, impulse, angular_impulse : Quantity
+        What of the three came from outside since the start; zero without perturbations.
     rotation_error : ndarray
         Frobenius norm ||I - R^T R||, the largest of all attitudes (N,).
     status : str
@@ -85,8 +91,8 @@ class Trajectory(Value):
         none is given (a last stretch that ``save_every`` leaves has its own, smaller one; of an adaptive integrator,
         their mean); and the time it took.
     max_relative_energy_error, max_energy_error, max_energy_error_over_potential : float, Quantity, float
-        Largest |E - E0| over every step: over |E0|, itself, and over |U0|. Spin energy hides the orbit in the first,
-        and heavy bodies hide light ones in all of them.
+        Largest |E - E0| over every step, less the work done from outside: over |E0|, itself, and over |U0|. Spin energy
+        hides the orbit in the first, and heavy bodies hide light ones in all of them.
     max_relative_angular_momentum_error, max_relative_linear_momentum_error, max_rotation_error : float
         Over every step. Linear momentum is relative to sum m |v|; in the relative frame it is kept by construction,
         and its figure is the round-off of the saved rows.
@@ -268,13 +274,16 @@ class Trajectory(Value):
 
     @property
     def _masses(self) -> Floats:
-        return np.array([body.si.mass for body in self.system.bodies])
+        return np.array([body.si.mass * body.pulls for body in self.system.bodies])
+
+    @property
+    def _moments(self) -> Floats:
+        return np.array([body.si.moments * body.pulls for body in self.system.bodies])
 
     @property
     def rotational_energy(self) -> Quantity:
         """Of all bodies together (N,)."""
-        moments = np.array([body.si.moments for body in self.system.bodies])
-        return quantity(0.5 * np.sum(moments * self.si.spin**2, axis=(-2, -1)), "J")
+        return quantity(0.5 * np.sum(self._moments * self.si.spin**2, axis=(-2, -1)), "J")
 
     @property
     def energy(self) -> Quantity:
@@ -294,10 +303,27 @@ class Trajectory(Value):
     @property
     def angular_momentum(self) -> Quantity:
         """The paper's pi_T, about the barycentre, inertial (N, 3)."""
-        moments = np.array([body.si.moments for body in self.system.bodies])
-        spins = np.einsum("nbij,nbj->ni", self.si.attitude, moments * self.si.spin)
+        spins = np.einsum("nbij,nbj->ni", self.si.attitude, self._moments * self.si.spin)
         orbits = np.einsum("i,nij->nj", self._masses, np.cross(*self._about_barycentre))
         return quantity(orbits + spins, "kg m2 / s")
+
+    @property
+    def work(self) -> Quantity:
+        """Done from outside since the start (N,): by forces, and by potentials that change with time.
+
+        The energy less this work is what a run should keep. It is counted about the barycentre, as the energy is.
+        """
+        return quantity(self.si.work, "J")
+
+    @property
+    def impulse(self) -> Quantity:
+        """Linear momentum that came from outside since the start (N, 3)."""
+        return quantity(self.si.impulse, "kg m / s")
+
+    @property
+    def angular_impulse(self) -> Quantity:
+        """Angular momentum about the barycentre that came from outside since the start (N, 3)."""
+        return quantity(self.si.angular_impulse, "kg m2 / s")
 
     @property
     def rotation_error(self) -> Floats:
@@ -406,6 +432,8 @@ class Trajectory(Value):
             "angular_momentum": self.angular_momentum,
             "rotation_error": self.rotation_error,
         }
+        if self.system.perturbations:
+            datasets |= {"work": self.work, "impulse": self.impulse, "angular_impulse": self.angular_impulse}
         attributes = {
             "status": self.status,
             "message": self.message,
@@ -487,6 +515,10 @@ def _floats(datasets: dict[str, Any], count: int) -> TrajectoryFloats:
         "attitude": (rows, count, 3, 3),
         "spin": (rows, count, 3),
         "potential_energy": (rows,),
+        "work": (rows,),
+        "impulse": (rows, 3),
+        "angular_impulse": (rows, 3),
     }
+    datasets = nothing_given(rows) | datasets  # as in the file of a run without perturbations
     arrays = {name: np.asarray(datasets[name], dtype=np.float64) for name in shapes}
     return TrajectoryFloats(*(checked(arrays[name], name, shape) for name, shape in shapes.items()))

@@ -1,6 +1,7 @@
 """Short runs to be compared: how far they are apart, how errors and disturbances grow along them."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from math import ceil, inf, log2, pi, sqrt
 from typing import NamedTuple
 
@@ -134,14 +135,16 @@ class Trials:
 
     Attributes
     ----------
+    begin : float
+        The time of the start [s].
     fastest, slowest : float
         The shortest and longest periods of pairs, as they are at the start [s].
     show : callable
         Takes how far a run is [s].
     """
 
-    def __init__(self, system: System, state: State) -> None:
-        self.system, self.state = system, state
+    def __init__(self, system: System, state: State, begin: float = 0.0) -> None:
+        self.system, self.state, self.begin = system, state, begin
         found = [rate for _, rate in rates(system, state)]
         self.fastest, self.slowest = (2 * pi / rate for rate in (max(found), min(found)))
         self.show: Callable[[float], None] = lambda _: None
@@ -152,7 +155,7 @@ class Trials:
 
     def outcome(self, integrator: Stepping, segments: list[Segment], state: State | None = None) -> Outcome:
         """Return a run by segments of equal steps, of this start or another."""
-        run = SteppedRun(self.system, state or self.state, integrator, segments)
+        run = SteppedRun(self.system, state or self.state, integrator, segments, self.begin)
         run.go(self.show)
         if run.pressed:
             raise KeyboardInterrupt
@@ -193,8 +196,7 @@ class Trials:
         times = row_ends(segments)
         for disturbance in DISTURBANCES:
             more = 1 + disturbance
-            place, attitude = self.state.position, self.state.attitude
-            disturbed = State(place, self.state.velocity * more, attitude, self.state.spin * more)
+            disturbed = replace(self.state, velocity=self.state.velocity * more, spin=self.state.spin * more)
             motion = self.motion(integrator, segments, disturbed)
             if motion is None:
                 return None

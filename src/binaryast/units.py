@@ -26,6 +26,10 @@ KINDS = {  # what a unit is called in a message, and one that users write
     "m3 / s2": ("a gravitational parameter G m", "m3 / s2"),
     "kg m2": ("a moment of inertia", "kg m2"),
     "J": ("an energy", "J"),
+    "N": ("a force", "N"),
+    "N m": ("a torque", "N m"),
+    "m2": ("an area", "m2"),
+    "rad / s2": ("an angular acceleration", "rad / s2"),
 }
 
 

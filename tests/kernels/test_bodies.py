@@ -75,13 +75,17 @@ def test_a_step_without_a_solution_leaves_the_state_as_it_was() -> None:
     system, state = four_bodies()
     w = working.of(system, state)
     before = w.state.copy()
-    assert lgvi.step(w.state, w.constants, SECOND_ORDER, w.attraction, w.parameters, 5000.0) == status.NO_ROTATION
+    assert (
+        lgvi.step(w.state, w.constants, SECOND_ORDER, w.attraction, w.parameters, w.external, 5000.0)
+        == status.NO_ROTATION
+    )
     assert np.any(w.state != before)
     w.state[:] = before
     arrays = (
         SECOND_ORDER,
         w.attraction,
         w.parameters,
+        w.external,
         w.constants,
         w.surfaces,
         w.state,

@@ -62,7 +62,10 @@ def test_the_state_is_untouched_where_a_step_has_no_solution() -> None:
     system, state = tumbling_pair()
     w = working.of(system, state)
     before = w.state.copy()
-    assert lgvi.step(w.state, w.constants, SECOND_ORDER, w.attraction, w.parameters, 5000.0) == status.NO_ROTATION
+    assert (
+        lgvi.step(w.state, w.constants, SECOND_ORDER, w.attraction, w.parameters, w.external, 5000.0)
+        == status.NO_ROTATION
+    )
     np.testing.assert_array_equal(w.state, before)
 
 

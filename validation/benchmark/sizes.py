@@ -45,7 +45,7 @@ class Series(NamedTuple):
 
 def stage_timer(system: ba.System, state: ba.State, integrator: Stepping, step: float) -> Callable[[], float]:
     """Return a function that measures a stage [us of CPU time], compiled and warm."""
-    w = working.of(system, state, inertial=integrator.is_inertial(len(system.bodies)))
+    w = working.of(system, state, inertial=integrator.is_inertial(system))
     start = w.state.copy()
 
     def take(count: int) -> float:

@@ -30,12 +30,15 @@ class Integrator(Value, ABC):
         Its properties.
     several : bool
         Whether it takes more than two bodies.
+    disturbed : bool
+        Whether it takes perturbations, and bodies that do not pull.
     title : str
         What it is, in a line.
     """
 
     title: ClassVar[str]
     several: ClassVar[bool] = True
+    disturbed: ClassVar[bool] = False
     frame: str | None
     symplectic: ClassVar[bool]
     reversible: ClassVar[bool]
@@ -46,23 +49,32 @@ class Integrator(Value, ABC):
     def order(self) -> int:
         """Order of the error in the step."""
 
-    def is_inertial(self, count: int) -> bool:
-        """Return whether a system of that many bodies is stepped in the inertial frame.
+    def is_inertial(self, system: System) -> bool:
+        """Return whether a system is stepped in the inertial frame: of several bodies, and where one does not pull.
 
         Raises
         ------
         InputError
-            Where the relative frame is asked for several bodies.
+            Where the relative frame is asked for these.
         """
-        if self.frame == "relative" and count > 2:
-            raise InputError(
-                f"{type(self).__name__}: frame='relative' is for a pair, got {count} bodies: take 'inertial'"
-            )
-        return count > 2 or self.frame == "inertial"
+        count = len(system.bodies)
+        needed = count > 2 or not all(body.pulls for body in system.bodies)
+        if self.frame == "relative" and needed:
+            found = f"{count} bodies" if count > 2 else "a body that does not pull"
+            raise InputError(f"{type(self).__name__}: frame='relative' is for a pair, got {found}: take 'inertial'")
+        return needed or self.frame == "inertial"
 
     def check_start(self, system: System, state: State) -> None:
         """Raise an `InputError` where it cannot follow this system from here."""
-        self.is_inertial(len(system.bodies))
+        self.is_inertial(system)
+        others = "take ba.LGVI or ba.Splitting"
+        if system.perturbations and not self.disturbed:
+            raise InputError(f"{type(self).__name__}: it takes no perturbations: {others}")
+        still = [body.name for body in system.bodies if not body.pulls]
+        if still and not self.disturbed:
+            raise InputError(
+                f"{type(self).__name__}: it takes no bodies that do not pull, such as {still[0]}: {others}"
+            )
 
     @classmethod
     def variants(cls) -> list[str]:
@@ -95,6 +107,7 @@ class Stepping(Integrator):
     adaptive: ClassVar[bool] = False  # type: ignore[misc]
     schemes: ClassVar[dict[str, Scheme]]
     exact_rotation: ClassVar[bool] = True
+    disturbed: ClassVar[bool] = True
 
     @property
     def order(self) -> int:
@@ -102,8 +115,11 @@ class Stepping(Integrator):
         return self.shares.order
 
     @abstractmethod
-    def kernel(self, *, inertial: bool) -> Callable[..., Any]:
-        """Return the compiled step of a pair in the relative frame, or of any number of bodies in the inertial one."""
+    def kernel(self, *, inertial: bool, disturbed: bool = False) -> Callable[..., Any]:
+        """Return the compiled step of a pair in the relative frame, or of any number of bodies in the inertial one.
+
+        ``disturbed`` tells whether anything acts from outside.
+        """
 
     @classmethod
     def variants(cls) -> list[str]:

@@ -92,8 +92,13 @@ class LGVI(Stepping):
         """The turn h Omega [rad] at and above which a step is refused: (128) says sin(theta) = h Omega."""
         return 1.0 / self.shares.longest
 
-    def kernel(self, *, inertial: bool) -> Callable[..., Any]:
+    def kernel(self, *, inertial: bool, disturbed: bool = False) -> Callable[..., Any]:
         """Return the compiled step of a pair in the relative frame, or of any number of bodies in the inertial one."""
+        if disturbed:
+            from binaryast.kernels.bodies import disturbed_steps as of_bodies
+            from binaryast.kernels.pair import disturbed_steps as of_pair
+
+            return of_bodies.lgvi() if inertial else of_pair.lgvi()
         if inertial:
             from binaryast.kernels.bodies.lgvi import step as bodies_step
 

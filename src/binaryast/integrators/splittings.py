@@ -78,8 +78,13 @@ class Splitting(ExactRotation):
     def __post_init__(self) -> None:
         self._check()
 
-    def kernel(self, *, inertial: bool) -> Callable[..., Any]:
+    def kernel(self, *, inertial: bool, disturbed: bool = False) -> Callable[..., Any]:
         """Return the compiled step of a pair in the relative frame, or of any number of bodies in the inertial one."""
+        if disturbed:
+            from binaryast.kernels.bodies import disturbed_steps as of_bodies
+            from binaryast.kernels.pair import disturbed_steps as of_pair
+
+            return of_bodies.splitting() if inertial else of_pair.splitting()
         if inertial:
             from binaryast.kernels.bodies.splitting import step as bodies_step
 
@@ -171,6 +176,8 @@ class KeplerSplitting(ExactRotation):
         """
         if len(system.bodies) > 2:
             raise InputError(f"KeplerSplitting: it is for a pair, got {len(system.bodies)} bodies: take ba.Splitting")
+        if not all(body.pulls for body in system.bodies):
+            raise InputError("KeplerSplitting: it takes no body that does not pull: take ba.Splitting")
         if not self.is_bound(system, state):
             position, velocity, _, _ = state.si
             distance, speed = (float(np.linalg.norm(array[1] - array[0])) for array in (position, velocity))
@@ -187,8 +194,12 @@ class KeplerSplitting(ExactRotation):
         x, v = position[1] - position[0], velocity[1] - velocity[0]
         return bool(v @ v / 2 * np.linalg.norm(x) < sum(body.si.gm for body in system.bodies))
 
-    def kernel(self, *, inertial: bool) -> Callable[..., Any]:
+    def kernel(self, *, inertial: bool, disturbed: bool = False) -> Callable[..., Any]:
         """Return the compiled step of a pair."""
+        if disturbed:
+            from binaryast.kernels.pair import disturbed_steps
+
+            return disturbed_steps.kepler_splitting()
         from binaryast.kernels.pair.kepler_splitting import step
 
         return step

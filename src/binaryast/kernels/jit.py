@@ -47,16 +47,16 @@ PAIR_POTENTIAL = types.UniTuple(types.float64, 7)(ARRAY, *[types.float64] * 12)
 # What is watched at every step, from (state, constants): energy, angular and linear momentum (3 each), rotation error,
 # smallest separation.
 MEASURE = types.UniTuple(types.float64, 9)(ARRAY, ARRAY)
+# From outside, for all bodies at once: the parameters p, the time t, positions x (n, 3) and attitudes R (n, 3, 3); a
+# potential adds its forces (n, 3), inertial, and torques (n, 3), in the bodies' frames, to the last two and returns U
+# and dU/dt; any other force is told velocities and spins (n, 3) too.
+EXTERNAL_POTENTIAL = types.UniTuple(types.float64, 2)(ARRAY, types.float64, ROWS, BODY_MATRICES, ROWS, ROWS)
+FORCE = types.void(ARRAY, types.float64, ROWS, ROWS, BODY_MATRICES, ROWS, ROWS, ROWS)
 # Which pair of surfaces touches, counted from 1, or 0, from (state, surfaces, state before the step).
 TOUCH = types.int64(ARRAY, ARRAY, ARRAY)
 # How a system attracts: the potential of a pair, or a table of one for each pair of several bodies.
 PAIR_POINTER = types.FunctionType(PAIR_POTENTIAL)
 PAIR_POINTERS = types.Array(types.int64, 1, "C")
-
-
-def step_signature(attraction: Any) -> Any:
-    """Return the signature of one step of h: status from (state, constants, scheme, potential(s), parameters, h)."""
-    return types.int64(ARRAY, ARRAY, ARRAY, attraction, ARRAY, types.float64)
 
 
 OPTIONS = {"nogil": True, "error_model": "numpy"}  # numpy: a division by zero gives inf, without a branch for each
@@ -154,6 +154,15 @@ def jit(signature: Any = None, *, allocates: bool = False, **options: Any) -> Ca
     return decorate
 
 
+def deferred(signature: Any, **options: Any) -> Callable[[Function], Callable[[], Function]]:
+    """Compile a kernel when it is first asked for; what this decorates returns the compiled function."""
+
+    def decorate(function: Function) -> Callable[[], Function]:
+        return functools.cache(lambda: jit(signature, **options)(function))
+
+    return decorate
+
+
 def reference(signature: Any) -> Callable[[Function], Function]:
     """Compile a kernel that may make arrays when it is first called, for each of these takes seconds; kept as others.
 
@@ -161,19 +170,17 @@ def reference(signature: Any) -> Callable[[Function], Function]:
     """
 
     def decorate(function: Function) -> Function:
-        compiled: list[Callable[..., Any]] = []
+        compiled = deferred(signature, allocates=True)(function)
 
         @functools.wraps(function)
         def call(*arguments: Any) -> Any:
-            if not compiled:
-                compiled.append(jit(signature, allocates=True)(function))
-            return compiled[0](*arguments)
+            return compiled()(*arguments)
 
         return call  # type: ignore[return-value]
 
     return decorate
 
 
-def compile_pair_potential(function: Function) -> Function:
-    """Compile a user's mutual potential with the signature of ours; it is not kept on disk."""
-    return numba.njit(PAIR_POTENTIAL, **OPTIONS)(function)  # type: ignore[no-any-return]
+def compile_for_user(function: Function, signature: Any) -> Function:
+    """Compile a user's function with a signature of ours; it is not kept on disk."""
+    return numba.njit(signature, **OPTIONS)(function)  # type: ignore[no-any-return]

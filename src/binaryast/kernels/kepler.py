@@ -7,7 +7,9 @@ Mechanics, 1971).
 
 from math import floor, inf, nan, pi, sqrt
 
-from binaryast.kernels.jit import Vector, jit
+from numba import types
+
+from binaryast.kernels.jit import ARRAY, Array, Vector, jit
 from binaryast.kernels.so3 import dot
 
 MOST_ITERATIONS = 200
@@ -91,3 +93,9 @@ def drift(x: Vector, v: Vector, gm: float, h: float) -> tuple[Vector, Vector]:
             s = low + d
         last = abs(d)
     return (nan, nan, nan), (nan, nan, nan)
+
+
+@jit(types.UniTuple(types.float64, 3)(ARRAY, ARRAY, types.float64, types.float64))
+def moved(x: Array, v: Array, gm: float, h: float) -> Vector:
+    """Return x(h) - x."""
+    return drift((x[0], x[1], x[2]), (v[0], v[1], v[2]), gm, h)[0]

@@ -10,8 +10,10 @@ from typing import Any
 
 from numba import types
 
-from binaryast.kernels.jit import ARRAY, MEASURE, ROWS, TOUCH, Array, Measures, step_signature
+from binaryast.kernels.external.arguments import EXTERNAL, External
+from binaryast.kernels.jit import ARRAY, MEASURE, ROWS, TOUCH, Array, Measures
 from binaryast.kernels.status import COMPLETED, CONTACT
+from binaryast.kernels.steps import step_signature
 
 # What is watched: the references first, then the extremes over every step.
 ENERGY = 0  # E0
@@ -37,6 +39,7 @@ def loop_signature(attraction: Any) -> Any:
         ARRAY,  # scheme
         attraction,
         ARRAY,  # parameters
+        EXTERNAL,  # what acts from outside
         ARRAY,  # constants
         ARRAY,  # surfaces
         ARRAY,  # state
@@ -56,6 +59,7 @@ def advance(
     scheme: Array,
     attraction: Any,
     parameters: Array,
+    external: External,
     constants: Array,
     surfaces: Array,
     state: Array,
@@ -76,7 +80,7 @@ def advance(
     for _ in range(count):
         for i in range(before.size):
             before[i] = state[i]
-        status = step(state, constants, scheme, attraction, parameters, h)
+        status = step(state, constants, scheme, attraction, parameters, external, h)
         if status != COMPLETED:
             for i in range(before.size):
                 state[i] = before[i]

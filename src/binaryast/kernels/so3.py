@@ -108,6 +108,12 @@ def dot(a: Vector, b: Vector) -> float:
 
 
 @jit()
+def weighted(a: Vector, scale: float, b: Vector) -> Vector:
+    """Return a + scale b."""
+    return a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]
+
+
+@jit()
 def rotate(r: Matrix, v: Vector) -> Vector:
     """Return R v."""
     x, y, z = v

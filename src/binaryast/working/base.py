@@ -2,25 +2,42 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from binaryast.kernels import contact
+from binaryast.kernels.external import layout as external_layout
+from binaryast.kernels.external.arguments import External
 from binaryast.kernels.so3 import quaternion_to_matrix
+from binaryast.perturbations.base import Span
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.units import Floats
+from binaryast.working.external import extended, external_of
 
 
 class Motion(NamedTuple):
-    """The motion of n bodies, time first: (N, n, 3), (N, n, 3), (N, n, 3, 3), (N, n, 3), and U (N,)."""
+    """The motion of n bodies, time first: (N, n, 3), (N, n, 3), (N, n, 3, 3), (N, n, 3), and U (N,).
+
+    Then what was given from outside since the start: work (N,), linear (N, 3) and angular momentum (N, 3), the work and
+    the latter about the barycentre.
+    """
 
     position: Floats
     velocity: Floats
     attitude: Floats
     spin: Floats
     potential_energy: Floats
+    work: Floats
+    impulse: Floats
+    angular_impulse: Floats
+
+
+def nothing_given(count: int) -> dict[str, Floats]:
+    """Return what was given from outside where there is nothing."""
+    return {"work": np.zeros(count), "impulse": np.zeros((count, 3)), "angular_impulse": np.zeros((count, 3))}
 
 
 def coinciding(system: System, position: Floats) -> int:
@@ -46,6 +63,8 @@ class Working(ABC):
         Masses and moments; what may touch; what the potentials need.
     attraction : object
         The potential of a pair, or the table of one for each pair.
+    external : External
+        What acts from outside.
     row_size, potential_at : int
         How much of the state a saved row keeps, and where in it U is.
     measure, touching, advance : callable
@@ -58,18 +77,22 @@ class Working(ABC):
     constants: Floats
     parameters: Floats
     attraction: Any
+    external: External
     row_size: int
     potential_at: int
     measure: Callable[..., Any]
     touching: Callable[..., Any]
     advance: Callable[..., Any]
 
-    def __init__(self, system: System, state: State) -> None:
+    def __init__(self, system: System, state: State, span: Span | None) -> None:
         self.system = system
-        self.masses = np.array([body.si.mass for body in system.bodies])
+        self.masses = np.array([body.si.mass * body.pulls for body in system.bodies])
         self.shares = self.masses / self.masses.sum()
         self.origin = self.shares @ state.si.position, self.shares @ state.si.velocity
         self.surfaces = surfaces(system)
+        self.span = span or Span(0.0, 0.0, None, state.frame)
+        self.disturbed = bool(span is not None and system.perturbations)
+        self.external = external_of(system, self.span) if self.disturbed else nothing_external()
 
     @abstractmethod
     def from_rows(self, rows: Floats, time: Floats) -> Motion:
@@ -79,10 +102,42 @@ class Working(ABC):
     def momentum_and_torque(self, body: int) -> tuple[Floats, Floats]:
         """Return a body's angular momentum and the torque on it, both in its own frame."""
 
+    @property
+    def extra(self) -> int:
+        """Where in the state the numbers begin that outside action needs."""
+        return self.state.size - external_layout.SIZE
+
+    def extend(self) -> None:
+        """Make room in the state for what outside action needs, and look at it."""
+        self.state = extended(self.state, self.span.begin)
+        self.row_size = self.extra + external_layout.KEPT
+
+    def given(self, rows: Floats) -> dict[str, Floats]:
+        """Return what was given from outside up to saved rows, about the barycentre, which it moves."""
+        if not self.disturbed:
+            return nothing_given(len(rows))
+        numbers = rows[:, self.extra :]
+        at = external_layout
+        linear, angular = numbers[:, at.LINEAR : at.LINEAR + 3], numbers[:, at.ANGULAR : at.ANGULAR + 3]
+        work = numbers[:, at.WORK] - 0.5 * np.sum(linear**2, axis=1) / self.masses.sum()
+        orbit = np.cross(self.centres(rows), linear)
+        return {"work": work, "impulse": linear.copy(), "angular_impulse": angular - orbit}
+
+    @abstractmethod
+    def centres(self, rows: Floats) -> Floats:
+        """Return by how much the barycentre (N, 3) was moved up to saved rows."""
+
     def moving_origin(self, time: Floats) -> Floats:
         """Return the barycentre (N, 1, 3) at times since the start: it moves uniformly, so no step carries it."""
         position, velocity = self.origin
         return np.asarray((position + time[:, None] * velocity)[:, None, :])
+
+
+@cache
+def nothing_external() -> External:
+    """Return what acts from outside where nothing does."""
+    table, none, no_rows = np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros((0, 3))
+    return External(table, table, none, table, no_rows, no_rows, np.zeros((0, 3, 3)), no_rows, no_rows, no_rows, none)
 
 
 def check_gravity(system: System, state: State) -> None:

@@ -4,7 +4,8 @@ Grouped by kind, each for all bodies in the order of the system: positions and v
 inertial axes, attitudes as unit quaternions (scalar last, body to inertial), angular momenta, each in its body's own
 frame. These 13 n numbers are the motion. Then follow the potential and what it exerts at this configuration, kept so
 that a step evaluates it once, and for each number of the motion the part that it lost to rounding. Nothing else
-influences the next step: this array is a checkpoint.
+influences the next step: this array is a checkpoint. Where something acts from outside, the numbers of
+``external/layout.py`` follow.
 """
 
 from binaryast.kernels.jit import jit
@@ -66,21 +67,25 @@ def row_size_of(n: int) -> int:
     return 13 * n + 1
 
 
-# Constants: the number of bodies and of pairs; for each body its mass, whether it is a point, and of its principal
-# moments 1/I_i and (I_j - I_k)/I_i, cyclic; for each pair its primary, its secondary, where its parameters begin and
-# end, and whether it attracts as two points do.
+# Constants: the number of bodies and of pairs; for each body its mass, whether it is a point, of its principal moments
+# 1/I_i and (I_j - I_k)/I_i, cyclic, and whether it pulls others; for each pair its primary, its secondary, where its
+# parameters begin and end, whether it attracts as two points do, and who feels it: both, or the secondary, or the
+# primary alone.
 HEADER = 2
-BODY = 8
+BODY = 9
 MASS = 0
 IS_POINT = 1
 INVERSE = 2
 RATIOS = 5
-PAIR = 5
+PULLS = 8
+PAIR = 6
 PRIMARY = 0
 SECONDARY = 1
 BEGIN = 2
 END = 3
 AS_POINTS = 4
+FELT_BY = 5
+BOTH, ONLY_SECONDARY, ONLY_PRIMARY = 0.0, 1.0, 2.0
 
 
 @jit()

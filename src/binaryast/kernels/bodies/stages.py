@@ -16,10 +16,14 @@ from binaryast.kernels.attraction import attract
 from binaryast.kernels.bodies.layout import (
     AS_POINTS,
     BEGIN,
+    BOTH,
     END,
+    FELT_BY,
     INVERSE,
     IS_POINT,
     MASS,
+    ONLY_PRIMARY,
+    ONLY_SECONDARY,
     PRIMARY,
     RATIOS,
     SECONDARY,
@@ -34,6 +38,7 @@ from binaryast.kernels.bodies.layout import (
     velocity_of,
 )
 from binaryast.kernels.compensated import add_vector
+from binaryast.kernels.external.arguments import External
 from binaryast.kernels.jit import ARRAY, PAIR_POINTERS, Array, Vector, jit
 from binaryast.kernels.pointers import pointer_at
 from binaryast.kernels.so3 import dot
@@ -59,7 +64,7 @@ def add(state: Array, at: int, sign: float, increment: Vector) -> None:
 
 
 @jit(types.int64(ARRAY, ARRAY, types.float64))
-def kick(state: Array, constants: Array, h: float) -> int:
+def kick_alone(state: Array, constants: Array, h: float) -> int:
     """Add to the momenta what gravity at this configuration does in a time h."""
     n = int(constants[0])
     remainder = remainder_of(n)
@@ -130,31 +135,61 @@ def exert(state: Array, constants: Array, potentials: Array, parameters: Array) 
             pointer_at(potentials, k),
             parameters[int(constants[pair + BEGIN]) : int(constants[pair + END])],
         )
-        total += u
-        add(state, gradient_of(n) + 3 * one, 1.0, gradient)
-        add(state, gradient_of(n) + 3 * two, -1.0, gradient)
-        add(state, torque_of(n) + 3 * one, 1.0, torque_1)
-        add(state, torque_of(n) + 3 * two, 1.0, torque_2)
+        felt_by = constants[pair + FELT_BY]
+        if felt_by == BOTH:  # what does not pull has no part in the energy of those that do
+            total += u
+        if felt_by != ONLY_PRIMARY:
+            add(state, gradient_of(n) + 3 * one, 1.0, gradient)
+            add(state, torque_of(n) + 3 * one, 1.0, torque_1)
+        if felt_by != ONLY_SECONDARY:
+            add(state, gradient_of(n) + 3 * two, -1.0, gradient)
+            add(state, torque_of(n) + 3 * two, 1.0, torque_2)
     state[potential_of(n)] = total
     add(state, gradient_of(n) + 3 * last, 1.0, on_last)
 
 
 @jit()
+def push_alone(state: Array, constants: Array, external: External, h: float) -> int:
+    """Kick by what the bodies exert on each other."""
+    return kick_alone(state, constants, h)
+
+
+@jit()
+def exert_alone(state: Array, constants: Array, potentials: Array, parameters: Array, external: External) -> None:
+    """Put what the bodies exert on each other into the state."""
+    exert(state, constants, potentials, parameters)
+
+
+@jit()
+def nothing_elapses(state: Array, constants: Array, h: float) -> None:
+    """Move what is none of the bodies: nothing."""
+
+
+@jit()
 def take_stages(
     turn: Callable[..., Any],
+    push: Callable[..., int],
+    exert_all: Callable[..., None],
+    elapse: Callable[..., None],
     state: Array,
     constants: Array,
     scheme: Array,
     potentials: Array,
     parameters: Array,
+    external: External,
     h: float,
 ) -> int:
-    """Advance n bodies by h; where a stage has no solution the state is spoilt, and the status says so."""
-    status = kick(state, constants, scheme[0] * h)
+    """Advance n bodies by h; where a stage has no solution the state is spoilt, and the status says so.
+
+    ``turn`` is the drift of a body's attitude; ``push`` is a kick, ``exert_all`` what is exerted somewhere, ``elapse``
+    what else a drift moves: of bodies alone `push_alone`, `exert_alone` and `nothing_elapses`.
+    """
+    status = push(state, constants, external, scheme[0] * h)
     for stage in range(scheme.size // 2):
         if status == COMPLETED:
+            elapse(state, constants, scheme[2 * stage + 1] * h)
             status = drift(turn, state, constants, scheme[2 * stage + 1] * h)
         if status == COMPLETED:
-            exert(state, constants, potentials, parameters)
-            status = kick(state, constants, scheme[2 * stage + 2] * h)
+            exert_all(state, constants, potentials, parameters, external)
+            status = push(state, constants, external, scheme[2 * stage + 2] * h)
     return status

@@ -4,11 +4,13 @@ from math import sqrt
 
 from binaryast.kernels import kepler
 from binaryast.kernels.compensated import add_vector
+from binaryast.kernels.external.arguments import External
 from binaryast.kernels.free_rotation import turn_both_exactly
-from binaryast.kernels.jit import PAIR_POINTER, Array, PairPotential, Vector, jit, step_signature
+from binaryast.kernels.jit import PAIR_POINTER, Array, PairPotential, Vector, jit
 from binaryast.kernels.pair.layout import GM, REDUCED_MASS
-from binaryast.kernels.pair.stages import Motion, take_stages
+from binaryast.kernels.pair.stages import Motion, exert_alone, kick_alone, nothing_elapses, take_stages
 from binaryast.kernels.so3 import dot
+from binaryast.kernels.steps import step_signature
 
 
 @jit()
@@ -29,8 +31,28 @@ def beyond_points(gradient: Vector, x: Vector, constants: Array) -> Vector:
 
 
 @jit(step_signature(PAIR_POINTER))
-def step(state: Array, constants: Array, scheme: Array, potential: PairPotential, parameters: Array, h: float) -> int:
+def step(
+    state: Array,
+    constants: Array,
+    scheme: Array,
+    potential: PairPotential,
+    parameters: Array,
+    external: External,
+    h: float,
+) -> int:
     """Advance a pair by h."""
     return take_stages(
-        move_on_orbit, beyond_points, turn_both_exactly, state, constants, scheme, potential, parameters, h
+        move_on_orbit,
+        beyond_points,
+        turn_both_exactly,
+        kick_alone,
+        exert_alone,
+        nothing_elapses,
+        state,
+        constants,
+        scheme,
+        potential,
+        parameters,
+        external,
+        h,
     )

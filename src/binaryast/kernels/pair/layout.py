@@ -4,7 +4,8 @@ The first twenty numbers are the motion: position and velocity of the secondary 
 axes, then for each body, the primary (the paper's body 2) first, its attitude as a unit quaternion (scalar last, body
 to inertial) and its angular momentum in its own frame. Then follow the potential and what it exerts at this
 configuration, a function of the motion that is kept so that a step evaluates it once, and for each of the twenty
-numbers the part that it lost to rounding. Nothing else influences the next step: this array is a checkpoint.
+numbers the part that it lost to rounding. Nothing else influences the next step: this array is a checkpoint. Where
+something acts from outside, the numbers of ``external/layout.py`` follow.
 """
 
 POSITION = 0  # x1 - x2 [m]
@@ -22,11 +23,14 @@ STATE_SIZE = 50
 ROW_SIZE = 21  # what a saved row keeps: the motion and U
 
 # Constants: the reduced mass and G (m1 + m2); for each body 1/I_i and (I_j - I_k)/I_i, cyclic, of its principal
-# moments I.
+# moments I; what part of all the mass each body is, and one over all of it.
 REDUCED_MASS = 0
 GM = 1
 INVERSE_2 = 2
 RATIOS_2 = 5
 INVERSE_1 = 8
 RATIOS_1 = 11
-CONSTANTS_SIZE = 14
+SHARE_2 = 14
+SHARE_1 = 15
+INVERSE_MASS = 16
+CONSTANTS_SIZE = 17

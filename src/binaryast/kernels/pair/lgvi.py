@@ -7,12 +7,43 @@ instead of (125) and (126) the barycentre moves uniformly. Higher orders are com
 lengths.
 """
 
+from binaryast.kernels.external.arguments import External
 from binaryast.kernels.free_rotation import turn_both_variationally
-from binaryast.kernels.jit import PAIR_POINTER, Array, PairPotential, jit, step_signature
-from binaryast.kernels.pair.stages import move_freely, take_stages, whole
+from binaryast.kernels.jit import PAIR_POINTER, Array, PairPotential, jit
+from binaryast.kernels.pair.stages import (
+    exert_alone,
+    kick_alone,
+    move_freely,
+    nothing_elapses,
+    take_stages,
+    whole,
+)
+from binaryast.kernels.steps import step_signature
 
 
 @jit(step_signature(PAIR_POINTER))
-def step(state: Array, constants: Array, scheme: Array, potential: PairPotential, parameters: Array, h: float) -> int:
+def step(
+    state: Array,
+    constants: Array,
+    scheme: Array,
+    potential: PairPotential,
+    parameters: Array,
+    external: External,
+    h: float,
+) -> int:
     """Advance a pair by h."""
-    return take_stages(move_freely, whole, turn_both_variationally, state, constants, scheme, potential, parameters, h)
+    return take_stages(
+        move_freely,
+        whole,
+        turn_both_variationally,
+        kick_alone,
+        exert_alone,
+        nothing_elapses,
+        state,
+        constants,
+        scheme,
+        potential,
+        parameters,
+        external,
+        h,
+    )

@@ -19,8 +19,8 @@ from binaryast.kernels.pair.layout import (
 from binaryast.kernels.so3 import cross, dot, rotate, rotation_error
 
 
-@jit(MEASURE)
-def measure(state: Array, constants: Array) -> Measures:
+@jit()
+def measured(state: Array, constants: Array) -> Measures:
     """Return E and pi_T (3) of section 5.1 about the barycentre, where gamma_T (3) is 0; ||I - R^T R||; and |x|."""
     mass = constants[REDUCED_MASS]
     x, v = vector_at(state, POSITION), vector_at(state, VELOCITY)
@@ -42,3 +42,9 @@ def measure(state: Array, constants: Array) -> Measures:
         max(rotation_error(quaternion_at(state, ATTITUDE_2)), rotation_error(quaternion_at(state, ATTITUDE_1))),
         sqrt(dot(x, x)),
     )
+
+
+@jit(MEASURE)
+def measure(state: Array, constants: Array) -> Measures:
+    """Return that of a pair alone."""
+    return measured(state, constants)
