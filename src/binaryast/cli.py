@@ -187,13 +187,16 @@ def _show(options: argparse.Namespace) -> int:
     for i, body in enumerate(entry.system.bodies):
         role = others if i else "primary"
         moments = ", ".join(f"{moment:.6g}" for moment in body.si.moments)
+        pulls = "" if body.pulls else "; it feels others and does not pull"
         density = "" if body.density is None else f", {body.density.value:.5g} kg/m3"
         print(f"  {body.name} ({role}): {body.shape!r}".replace("<Quantity ", "").replace(">", ""))
-        print(f"    {body.si.mass:.6g} kg, GM {body.si.gm:.8g} m3/s2{density}; moments {moments} kg m2")
+        print(f"    {body.si.mass:.6g} kg, GM {body.si.gm:.8g} m3/s2{density}; moments {moments} kg m2{pulls}")
         for line in _place(body):
             print(line)
     for line in _gravity(entry.system):
         print(f"  gravity{line}")
+    for perturbation in entry.system.perturbations:
+        print(f"  from outside: {perturbation!r}")
     distances = np.linalg.norm(entry.state.si.position[1:] - entry.state.si.position[0], axis=1)
     print(f"  start: separation {', '.join(f'{d:.8g}' for d in distances)} m, axes {entry.state.frame}")
     how = f"by {entry.integrator!r}" if entry.accuracy is None else f"to an accuracy of {entry.accuracy:g} at the end"

@@ -52,6 +52,10 @@ none::
     accuracy = 1e-8                               # may be left out; then the command picks method and step by itself
     integrator = { type = "LGVI", order = 8 }     # so may this: LGVI of order 2
 
+    [[perturbations]]                             # or Planet, Flyby, ThirdBody, TidalTorque, Yorp, Byorp, ...
+    type = "Sun"
+    orbit = { semi_major_axis = "1.64 AU", eccentricity = 0.38, mean_anomaly = "232 deg" }
+
     [[impulses]]                                  # or type = "Impulse", with time, body and delta_v
     type = "Impact"
     time = "1 d"
@@ -70,7 +74,7 @@ from typing import Any
 
 from astropy.units import Quantity
 
-from binaryast import coefficients, gravity, impulses, shapes, unions
+from binaryast import coefficients, gravity, impulses, perturbations, shapes, unions
 from binaryast.adaptive import Adaptive
 from binaryast.bodies import RigidBody
 from binaryast.elements import Orbit
@@ -201,13 +205,17 @@ def loads(text: str, *, name: str, where: str, folder: Path = Path()) -> Scenari
 
 def _scenario(tables: dict[str, Any], name: str, text: str, folder: Path) -> Scenario:
     """Build everything that the tables say."""
-    check_known(tables, ("title", "bodies", "gravity", "state", "run", "impulses", "sources"), "")
+    check_known(tables, ("title", "bodies", "gravity", "perturbations", "state", "run", "impulses", "sources"), "")
     check_needed(tables, ("bodies", "state", "run"), "")
     bodies = tables["bodies"]
     if not isinstance(bodies, list) or not all(isinstance(body, dict) for body in bodies):
         raise InputError("bodies: expected a table [[bodies]] for each body, the primary first")
     models = _gravity(table_of(tables, "gravity"))
-    system = System([_body(body, f"bodies[{i}]", folder) for i, body in enumerate(bodies)], models)
+    system = System(
+        [_body(body, f"bodies[{i}]", folder) for i, body in enumerate(bodies)],
+        models,
+        [_perturbation(table, f"perturbations[{i}]") for i, table in enumerate(_perturbations(tables))],
+    )
     run = table_of(tables, "run")
     check_known(run, ("duration", "step", "save_every", "accuracy", "integrator"), "run.")
     check_needed(run, ("duration",), "run.")
@@ -229,13 +237,13 @@ def _scenario(tables: dict[str, Any], name: str, text: str, folder: Path) -> Sce
 
 def _body(table: dict[str, Any], where: str, folder: Path) -> RigidBody:
     """Return a body."""
-    check_known(table, ("name", "shape", "mass", "density", "gm", "inertia"), f"{where}.")
+    check_known(table, ("name", "shape", "mass", "density", "gm", "inertia", "pulls"), f"{where}.")
     check_needed(table, ("name", "shape"), f"{where}.")
     units = {"mass": "kg", "density": "kg / m3", "gm": "m3 / s2", "inertia": "kg m2"}
     given = {key: text_of(table[key], f"{where}.{key}", unit) for key, unit in units.items() if key in table}
     shape = _shape(table_of(table, "shape", f"{where}."), f"{where}.shape", folder)
     quantities = {key: parse(text, f"{where}.{key}", f"1 {units[key]}") for key, text in given.items()}
-    return RigidBody(table["name"], shape, **quantities)
+    return RigidBody(table["name"], shape, **quantities, pulls=table.get("pulls", True))
 
 
 def _shape(table: dict[str, Any], where: str, folder: Path) -> Any:
@@ -300,6 +308,27 @@ def _model(table: dict[str, Any], where: str) -> Any:
     """Return a model of gravity, with the models inside it."""
     table = {key: _model(value, f"{where}.{key}") if isinstance(value, dict) else value for key, value in table.items()}
     return _typed(table, GRAVITIES, where)
+
+
+def _perturbations(tables: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the tables of perturbations."""
+    found = tables.get("perturbations", [])
+    if not isinstance(found, list) or not all(isinstance(table, dict) for table in found):
+        raise InputError(f"perturbations: expected tables [[perturbations]], got {brief(found)}")
+    return found
+
+
+def _perturbation(table: dict[str, Any], where: str) -> perturbations.Perturbation:
+    """Return a perturbation, with the orbit, the Sun and the epoch in it."""
+    table = dict(table)
+    if "orbit" in table:
+        orbit = table_of(table, "orbit", f"{where}.")
+        table["orbit"] = call(Orbit, {}, orbit, f"{where}.orbit")
+    if "sun" in table:
+        table["sun"] = _perturbation(table_of(table, "sun", f"{where}."), f"{where}.sun")
+    if "epoch" in table:
+        table["epoch"] = epoch(table["epoch"], f"{where}.epoch")
+    return _typed(table, perturbations.KINDS, where)  # type: ignore[no-any-return]
 
 
 def _typed(table: dict[str, Any], kinds: dict[str, Any], where: str) -> Any:

@@ -21,6 +21,7 @@ def summary(run: Any) -> str:
         f"{run.wall_time.value:.2g} s{speed}",
         *_distances(run),
         *(f"  {line}" for line in kicks(run)),
+        *(f"  {line}" for line in from_outside(run)),
         f"  largest errors: energy {run.max_relative_energy_error:.4e} of |E0| "
         f"({run.max_energy_error_over_potential:.2e} of |U0|), "
         f"momentum angular {run.max_relative_angular_momentum_error:.1e}, "
@@ -47,6 +48,14 @@ def kicks(run: Any) -> list[str]:
         after = span(impulse.time.value) + (", not reached" if impulse.time.value > run.si.time[-1] else "")
         lines.append(f"{type(impulse).__name__} on {name} after {after}: its velocity changes by {speed:.5g} m/s")
     return lines
+
+
+def from_outside(run: Any) -> list[str]:
+    """Return what acted from outside, and the work that it did."""
+    if not run.system.perturbations:
+        return []
+    names = ", ".join(dict.fromkeys(type(one).__name__ for one in run.system.perturbations))
+    return [f"from outside: {names}; work {run.si.work[-1] - run.si.work[0]:.4g} J"]
 
 
 def _distances(run: Any) -> list[str]:

@@ -17,6 +17,8 @@ PLAIN = (  # arguments that have no unit
     *("accuracy", "near", "far", "parallel"),
     *("order", "scheme", "method", "rtol", "atol", "tolerance"),
     *("body", "beta"),
+    *("raised_by", "love_number", "quality_factor", "coefficient", "normal", "specular", "diffuse"),
+    *("first_term_only", "ecliptic", "orbit", "sun"),
     *("eccentricity", "about", "R", "R2", "attitude", "epoch", "frame"),
 )
 EXAMPLES = {  # what a text with a unit looks like
@@ -38,6 +40,18 @@ EXAMPLES = {  # what a text with a unit looks like
     "true_anomaly": "10 deg",
     "mean_anomaly": "10 deg",
     "period": "12 h",
+    "gm": "398600 km3 / s2",
+    "distance": "20000 km",
+    "speed": "8 km / s",
+    "time_lag": "10 s",
+    "radius": "400 m",
+    "area": "10 m2",
+    "torque": "1e-3 N m",
+    "acceleration": "1e-8 rad / d2",
+    "force": "1e-3 N",
+    "times": "[0, 1, 2, 3, 4, 5] d",
+    "positions": "[[1, 0, 0], [1, 0.1, 0]] AU",
+    "semi_major_axis": "1.64 AU",
     "V": "[0, 1, 0] m / s",
     "V2": "[0, 1, 0] m / s",
     "Omega": "[0, 0, 1] deg / min",
@@ -78,7 +92,7 @@ def time(value: Any, where: str) -> Quantity:
     return quantity(to_si(parse(text_of(value, where, "s"), where, "1 s"), "s", where, sign="positive"), "s")
 
 
-def epoch(value: Any) -> Time:
+def epoch(value: Any, where: str = "state.epoch") -> Time:
     """Return an epoch: an ISO date and time, followed by its scale, TDB by default."""
     if isinstance(value, datetime) and value.tzinfo is not None:
         value = f"{value.astimezone(UTC).replace(tzinfo=None).isoformat()} UTC"
@@ -88,7 +102,7 @@ def epoch(value: Any) -> Time:
         return Time("T".join(words), scale=scale)
     except Exception:  # astropy has several, none of them short
         raise InputError(
-            f'state.epoch: {brief(value)!r} is no date: expected such as "2022-09-26T23:14:24 UTC"'
+            f'{where}: {brief(value)!r} is no date: expected such as "2022-09-26T23:14:24 UTC"'
         ) from None
 
 

@@ -12,13 +12,14 @@ from binaryast.kernels.jit import Array, Matrix, Vector, jit
 from binaryast.kernels.so3 import dot, relative_attitude, rotate, rotate_back
 
 # surfaces: for each body the radius of a sphere about its mass centre that holds it, its smallest semi-axis, where its
-# pieces begin and how many they are; then for each piece its centre and the six elements xx, xy, xz, yy, yz, zz of its
+# pieces begin, how many they are, and whether it pulls: of two that do not, neither is looked at; then for each piece its centre and the six elements xx, xy, xz, yy, yz, zz of its
 # matrix, in the body's frame.
 RADIUS = 0
 SMALLEST = 1
 FIRST = 2
 COUNT = 3
-HEADER = 4  # for each body
+PULLS = 4
+HEADER = 5  # for each body
 PIECE = 9
 GOLDEN = 0.6180339887498949
 LOOKS = 40  # the golden section is then 4e-9 wide

@@ -159,7 +159,7 @@ def surfaces(system: System) -> Floats:
         surface = body.surface
         first = header.size + contact.PIECE * len(pieces)
         smallest = min((np.sqrt(max(np.linalg.eigvalsh(matrix)[0], 0.0)) for _, matrix in surface), default=0.0)
-        header[i] = body.bounding_radius, smallest, first, len(surface)
+        header[i] = body.bounding_radius, smallest, first, len(surface), body.pulls
         pieces += [np.concatenate([centre, matrix[np.triu_indices(3)]]) for centre, matrix in surface]
     return np.concatenate([header.ravel(), *pieces])
 

@@ -2,7 +2,7 @@
 
 from binaryast.kernels.arrays import matrix_at, vector_at
 from binaryast.kernels.bodies.layout import attitude_of, size_of
-from binaryast.kernels.contact import HEADER, RADIUS, can_touch, touch_on_the_way
+from binaryast.kernels.contact import HEADER, PULLS, RADIUS, can_touch, touch_on_the_way
 from binaryast.kernels.jit import TOUCH, Array, jit
 
 
@@ -19,6 +19,8 @@ def touching(state: Array, surfaces: Array, before: Array) -> int:
     for two in range(n):
         x2, y2 = vector_at(before, 3 * two), vector_at(state, 3 * two)
         for one in range(two + 1, n):
+            if surfaces[HEADER * one + PULLS] + surfaces[HEADER * two + PULLS] == 0.0:  # they are no pair
+                continue
             pair += 1
             if not can_touch(surfaces, one, two):
                 continue
