@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from binaryast.dense import difference
 from binaryast.errors import AccuracyError, StepError
 from binaryast.integrators import Splitting, Stepping
 from binaryast.outcome import Outcome
@@ -36,18 +37,6 @@ def rates(system: System, state: State) -> Iterator[tuple[Pair, float]]:
         if distance > 0:
             gm = system.bodies[pair.primary].si.gm + system.bodies[pair.secondary].si.gm
             yield pair, max(sqrt(gm / distance**3), float(np.linalg.norm(np.cross(x, v))) / distance**2)
-
-
-def errors(one: Motion, other: Motion) -> Floats:
-    """Return how far two motions are apart at their rows: the largest of all bodies.
-
-    Positions count from the primary's and relative to the distance from it, attitudes as angles [rad].
-    """
-    x, y = (motion.position[:, 1:] - motion.position[:, :1] for motion in (one, other))
-    position = np.linalg.norm(x - y, axis=-1) / np.linalg.norm(y, axis=-1)
-    chord = np.linalg.norm(one.attitude - other.attitude, axis=(-2, -1)) / sqrt(8)  # sin of half of the angle
-    angle = 2 * np.arcsin(np.minimum(chord, 1.0))
-    return np.asarray(np.maximum(position.max(axis=1), angle.max(axis=1)))
 
 
 def whole(count: float) -> int:
@@ -181,7 +170,7 @@ class Trials:
             before, segments = best, equal(time, count)
             best = self.motion(REFERENCE, segments)
             if best is not None and before is not None:
-                apart = float(errors(before, best).max())
+                apart = float(difference(before, best).max())
                 stalls = stalls + 1 if apart > last / 2 else 0
                 if apart < wanted / 30 or (stalls and last < SMALL) or stalls == 3:  # shorter steps do not help
                     return best, segments, apart
@@ -198,7 +187,7 @@ class Trials:
             motion = self.motion(integrator, segments, disturbed)
             if motion is None:
                 return None
-            apart = errors(motion, undisturbed)
+            apart = difference(motion, undisturbed)
             if apart.max() < LARGE:
                 return Sensitivity(times, apart / disturbance)
         factors = np.where(np.maximum.accumulate(apart) < LARGE, apart / disturbance, inf)  # it is lost in the end
