@@ -264,13 +264,13 @@ class Trajectory(Value):
         first, last = self.si.time[[0, -1]]
         if len(times) == 0 or np.any(np.diff(times) <= 0):
             raise InputError(f"time: expected times that grow, got {brief(times)} s")
+        if len(self) < 2 and np.any(times != first):
+            raise InputError("time: the run has one row only: expected at least 2")
         within = np.clip(times, first, last)
         for wrong in times[np.abs(times - within) > 1e-14 * last]:
             raise InputError(
                 f"time: {span(wrong)} is outside of the run, whose rows are from {span(first)} to {span(last)}"
             )
-        if len(self) < 2 and np.any(times != first):
-            raise InputError("time: the run has one row only: expected at least 2")
         return np.asarray(within), not shape
 
     def _between(self, times: Floats, side: str) -> TrajectoryFloats:
