@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 from binaryast import constants as _constants
 
 if TYPE_CHECKING:
-    from binaryast import analysis, catalogue, constants, equations, errors, plotting, scenario
+    from binaryast import analysis, catalogue, constants, equations, errors, events, plotting, scenario
     from binaryast.adaptive import Adaptive
     from binaryast.bodies import RigidBody
     from binaryast.coefficients import InertiaIntegrals, StokesCoefficients
     from binaryast.errors import BinaryastError
+    from binaryast.events import event
     from binaryast.fields import GravityField, polyhedron_field
     from binaryast.filling import mascons
     from binaryast.gravity import (
@@ -82,6 +83,7 @@ _HOMES = {
     "Taylor": "integrators",
     "Trajectory": "trajectory",
     "Union": "unions",
+    "event": "events",
     "mascons": "filling",
     "pair_potential": "gravity",
     "polyhedron_field": "fields",
@@ -89,7 +91,7 @@ _HOMES = {
     "retrace": "retracing",
     "surface": "surfaces",
 }
-_MODULES = ("analysis", "catalogue", "constants", "equations", "errors", "plotting", "scenario")
+_MODULES = ("analysis", "catalogue", "constants", "equations", "errors", "events", "plotting", "scenario")
 
 __all__ = [
     "LGVI",
@@ -136,6 +138,8 @@ __all__ = [
     "constants",
     "equations",
     "errors",
+    "event",
+    "events",
     "mascons",
     "pair_potential",
     "plotting",

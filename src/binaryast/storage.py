@@ -25,6 +25,7 @@ from binaryast import (
     adaptive,
     bodies,
     coefficients,
+    events,
     gravity,
     impulses,
     integrators,
@@ -44,7 +45,7 @@ FORMAT = "binaryast trajectory"
 FORMAT_VERSION = 1
 SEAL_SIZE = 512  # bytes: the smallest block that HDF5 leaves free at the start of a file
 MODULES = (  # whose classes a file can bring back
-    *(adaptive, bodies, coefficients, gravity, impulses, integrators, layered),
+    *(adaptive, bodies, coefficients, events, gravity, impulses, integrators, layered),
     *(polyhedron, polyhedron_pair, polyhedron_point, shapes, system, unions),
 )
 CLASSES: dict[str, type[Value]] = {

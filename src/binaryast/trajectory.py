@@ -15,8 +15,10 @@ from scipy.spatial.transform import Rotation
 
 from binaryast import dense, storage, summaries
 from binaryast.errors import CheckError, InputError, InterpolationWarning, StepWarning
+from binaryast.events import Event
 from binaryast.impulses import AnyImpulse
 from binaryast.integrators import Integrator
+from binaryast.occurrences import Occurrence, OccurrenceFloats
 from binaryast.rotations import ROTATION_TOLERANCE
 from binaryast.state import RelativeState, State
 from binaryast.system import System
@@ -52,6 +54,7 @@ FIGURES = {  # of the whole run, over every step; with their units
     "estimated_error": "",
 }
 DOUBTFUL_INTERPOLATION = 1e-6
+OCCURRENCE_UNITS = dict(zip(OccurrenceFloats._fields, ("", "s", "", "m", "m / s", "", "rad / s"), strict=True))
 SOMETIMES = ("max_next_degree_term", "accuracy", "estimated_error")  # None of some runs, and in older files
 
 
@@ -80,7 +83,7 @@ class Trajectory(Value):
     rotation_error : ndarray
         Frobenius norm ||I - R^T R||, the largest of all attitudes (N,).
     status : str
-        ``completed``, ``contact``, ``interrupted`` or ``failed``; ``message`` says more.
+        ``completed``, ``contact``, ``escape``, ``event``, ``interrupted`` or ``failed``; ``message`` says more.
     steps, step, wall_time : int, Quantity, Quantity
         Steps taken; the step used, the largest one up to the integrator's that divides ``save_every``, or the run where
         none is given (a last stretch that ``save_every`` leaves has its own, smaller one; of an adaptive integrator,
@@ -92,7 +95,7 @@ class Trajectory(Value):
         Over every step. Linear momentum is relative to sum m |v|; in the relative frame it is kept by construction,
         and its figure is the round-off of the saved rows.
     closest_approach, closest_approach_time : Quantity
-        Smallest distance of any two mass centres over every step, and when.
+        Smallest distance of any two mass centres, also within steps, and when.
     max_next_degree_term : float or None
         Largest size, at saved rows, of the next two degrees of U that the gravity of a pair leaves out, over G m1 m2/r.
         It is an estimate of what its cut costs; torques lose more, by (r/size)^2. None of gravity without a cut.
@@ -106,6 +109,10 @@ class Trajectory(Value):
         accuracy is that of each leg; ``integrator`` is that of the last.
     legs : tuple of Trajectory
         The rows between impulses; the run itself where there are none.
+    watched : tuple of Event
+        What was looked for, and the contact that ended the run.
+    events : tuple of Occurrence
+        What happened, in order of time, with the states there; ``occurrences`` are its arrays.
     integrator, system, epoch, frame, provenance
         What was run, and on what.
     si : TrajectoryFloats
@@ -136,6 +143,8 @@ class Trajectory(Value):
     estimated_error: float | None = None
     choice: str = ""
     impulses: tuple[AnyImpulse, ...] = ()
+    watched: tuple[Event, ...] = ()
+    occurrences: OccurrenceFloats | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         for array in self.si:
@@ -173,11 +182,7 @@ class Trajectory(Value):
     @cached_property
     def _rotations(self) -> Floats:
         """The attitudes, or the rotations nearest to them where they are none (N, n, 3, 3)."""
-        r = self.si.attitude
-        if not np.any(_rotation_errors(r) > ROTATION_TOLERANCE):
-            return r
-        matrices = r.reshape(-1, 3, 3).copy()  # SciPy below 1.15 takes no read-only array
-        return np.asarray(Rotation.from_matrix(matrices).as_matrix().reshape(r.shape))
+        return nearest_rotations(self.si.attitude)
 
     def _rows(self, index: slice) -> "Trajectory":
         """Return some of the rows; the figures remain those of the whole run."""
@@ -317,6 +322,27 @@ class Trajectory(Value):
         times = times[~np.isin(times, self.si.time)]
         intervals = np.searchsorted(self.si.time, times, side="right") - 1
         return float(self.interpolation_error[intervals].max(initial=0.0))
+
+    @cached_property
+    def events(self) -> tuple[Occurrence, ...]:
+        """What happened, in order of time."""
+        if self.occurrences is None:
+            return ()
+        return tuple(self._occurrence(*one) for one in zip(*self.occurrences, strict=True))
+
+    def _occurrence(self, event: Any, time: Any, direction: Any, *motion: Any) -> Occurrence:
+        """Return one of them, with units."""
+        position, velocity, attitude, spin = motion
+        when = quantity(float(time), "s")
+        state = State(
+            quantity(position, "m"),
+            quantity(velocity, "m / s"),
+            nearest_rotations(attitude),
+            quantity(spin, "rad / s"),
+            None if self.epoch is None else self.epoch + TimeDelta(when),
+            self.frame,
+        )
+        return Occurrence(self.watched[int(event)], when, int(direction), state)
 
     @property
     def time(self) -> Quantity:
@@ -545,6 +571,12 @@ class Trajectory(Value):
         attributes |= {name: getattr(figure, "value", figure) for name, figure in figures.items() if figure is not None}
         values = {"system": self.system, "integrator": self.integrator, "epoch": self.epoch}
         values |= {"impulses": self.impulses} if self.impulses else {}
+        if self.watched and self.occurrences is not None:
+            values["watched"] = self.watched
+            datasets |= {
+                f"events_{name}": quantity(array, unit) if unit else array
+                for (name, unit), array in zip(OCCURRENCE_UNITS.items(), self.occurrences, strict=True)
+            }
         return storage.write(
             storage.as_path(path), storage.Content(datasets, attributes, values, self.provenance), force=force
         )
@@ -587,6 +619,8 @@ class Trajectory(Value):
                 provenance=content.provenance,
                 choice=str(attributes["choice"]),
                 impulses=content.values.get("impulses", ()),
+                watched=content.values.get("watched", ()),
+                occurrences=_occurrences(content.datasets, content.values),
                 **{
                     name: quantity(attributes[name], unit) if unit else attributes[name]
                     for name, unit in FIGURES.items()
@@ -596,6 +630,14 @@ class Trajectory(Value):
             raise storage.broken(path, f"{error.args[0]} is missing") from None
         except Exception as error:  # a file that was changed can hold anything
             raise storage.broken(path, brief(error)) from None
+
+
+def nearest_rotations(r: Floats) -> Floats:
+    """Return attitudes (.., 3, 3) as they are, or the rotations nearest to them where they are none."""
+    if not np.any(_rotation_errors(r) > ROTATION_TOLERANCE):
+        return r
+    matrices = r.reshape(-1, 3, 3).copy()  # SciPy below 1.15 takes no read-only array
+    return np.asarray(Rotation.from_matrix(matrices).as_matrix().reshape(r.shape))
 
 
 def _rotation_errors(r: Floats) -> Floats:
@@ -616,3 +658,16 @@ def _floats(datasets: dict[str, Any], count: int) -> TrajectoryFloats:
     }
     arrays = {name: np.asarray(datasets[name], dtype=np.float64) for name in shapes}
     return TrajectoryFloats(*(checked(arrays[name], name, shape) for name, shape in shapes.items()))
+
+
+def _occurrences(datasets: dict[str, Any], values: dict[str, Any]) -> OccurrenceFloats:
+    """Return what happened of a file, nothing where it does not say."""
+    count = len(values["system"].bodies)
+    if "events_time" not in datasets:
+        return OccurrenceFloats.none(count)
+    number = len(datasets["events_time"])
+    vectors = (number, count, 3)
+    shapes = ((number,), (number,), (number,), vectors, vectors, (*vectors, 3), vectors)
+    arrays = {name: np.asarray(datasets[f"events_{name}"], dtype=np.float64) for name in OCCURRENCE_UNITS}
+    found = (checked(array, name, shape) for (name, array), shape in zip(arrays.items(), shapes, strict=True))
+    return OccurrenceFloats(*found)

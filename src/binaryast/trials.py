@@ -1,7 +1,7 @@
 """Short runs to be compared: how far they are apart, how errors and disturbances grow along them."""
 
-from collections.abc import Callable, Iterator
-from math import ceil, inf, log2, pi, sqrt
+from collections.abc import Callable
+from math import ceil, inf, log2, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -10,10 +10,11 @@ from binaryast.dense import difference
 from binaryast.errors import AccuracyError, StepError
 from binaryast.integrators import Splitting, Stepping
 from binaryast.outcome import Outcome
+from binaryast.rates import rates
 from binaryast.schedule import SLACK, Segment
 from binaryast.state import State
 from binaryast.stepping import SteppedRun
-from binaryast.system import Pair, System
+from binaryast.system import System
 from binaryast.units import Floats, quantity, span
 from binaryast.working import Motion
 
@@ -26,17 +27,6 @@ LEAST = 5000  # of that bound, for runs of less than an orbit
 SMALL = 1e-9  # an error that does not fall any more below this is round-off
 REFERENCE = Splitting(quantity(1.0, "s"), "ss10")
 SHORT_STEPS = Splitting(quantity(1.0, "s"), "rkn6a")  # to see whether bodies touch
-
-
-def rates(system: System, state: State) -> Iterator[tuple[Pair, float]]:
-    """Yield how fast each pair goes, or would fall, round each other now [rad/s]."""
-    position, velocity, _, _ = state.si
-    for pair in system.pairs:
-        x, v = (array[pair.secondary] - array[pair.primary] for array in (position, velocity))
-        distance = float(np.linalg.norm(x))
-        if distance > 0:
-            gm = system.bodies[pair.primary].si.gm + system.bodies[pair.secondary].si.gm
-            yield pair, max(sqrt(gm / distance**3), float(np.linalg.norm(np.cross(x, v))) / distance**2)
 
 
 def whole(count: float) -> int:

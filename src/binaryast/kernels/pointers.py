@@ -1,10 +1,11 @@
-"""A table of pair potentials: one pointer for each pair of bodies, so that one compilation serves any number of them.
+"""Tables of pointers to compiled functions, so that one compilation serves any number of them.
 
-numba's typed list could hold them, but reading it needs reference counting, which the steps do without. Here the
-pointers lie, as they are, in an array of whole numbers.
+One holds the pair potentials, one pointer for each pair of bodies, another what events watch. numba's typed list could
+hold them, but reading it needs reference counting, which the steps do without. Here the pointers lie, as they are, in
+an array of whole numbers.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,14 +14,14 @@ from numba import types
 from numba.core import cgutils
 from numba.extending import intrinsic
 
-from binaryast.kernels.jit import PAIR_POINTER, PAIR_POINTERS, PairPotential, jit
+from binaryast.kernels.jit import EVENT_POINTER, PAIR_POINTER, PAIR_POINTERS, PairPotential, jit
 
 WORDS = 4  # room for one pointer in the table, in numbers of 8 bytes; numba's has 3
 
 
-def _place(context: Any, builder: Any, table_type: Any, table: Any, k: Any) -> Any:
+def _place(kind: Any, context: Any, builder: Any, table_type: Any, table: Any, k: Any) -> Any:
     """Return the address of the k-th pointer, typed as what numba passes for one."""
-    pointer = context.get_value_type(PAIR_POINTER)
+    pointer = context.get_value_type(kind)
     if context.get_abi_sizeof(pointer) > 8 * WORDS:
         raise NotImplementedError(f"a pointer to a function of this numba needs more than {WORDS} words")
     data = context.make_array(table_type)(context, builder, table).data
@@ -28,24 +29,30 @@ def _place(context: Any, builder: Any, table_type: Any, table: Any, k: Any) -> A
     return builder.bitcast(cgutils.gep(builder, data, at), pointer.as_pointer())
 
 
-@intrinsic  # type: ignore[untyped-decorator]
-def _put(_: Any, table: Any, k: Any, potential: Any) -> Any:
-    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        place = _place(context, builder, signature.args[0], values[0], values[1])
-        builder.store(values[2], place)
-        return context.get_dummy_value()
+def _access(kind: Any) -> tuple[Any, Any]:
+    """Return what puts a pointer of a kind into a table, and what takes it out."""
 
-    return types.void(table, types.int64, potential), code
+    @intrinsic  # type: ignore[untyped-decorator]
+    def put(_: Any, table: Any, k: Any, function: Any) -> Any:
+        def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            place = _place(kind, context, builder, signature.args[0], values[0], values[1])
+            builder.store(values[2], place)
+            return context.get_dummy_value()
+
+        return types.void(table, types.int64, function), code
+
+    @intrinsic  # type: ignore[untyped-decorator]
+    def take(_: Any, table: Any, k: Any) -> Any:
+        def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+            return builder.load(_place(kind, context, builder, signature.args[0], values[0], values[1]))
+
+        return kind(table, types.int64), code
+
+    return put, take
 
 
-@intrinsic  # type: ignore[untyped-decorator]
-def pointer_at(_: Any, table: Any, k: Any) -> Any:
-    """Return the k-th potential of a table."""
-
-    def code(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        return builder.load(_place(context, builder, signature.args[0], values[0], values[1]))
-
-    return PAIR_POINTER(table, types.int64), code
+_put, pointer_at = _access(PAIR_POINTER)
+_put_event, event_at = _access(EVENT_POINTER)
 
 
 @jit(types.void(PAIR_POINTERS, types.int64, PAIR_POINTER))
@@ -54,9 +61,15 @@ def put_pointer(table: Any, k: int, potential: PairPotential) -> None:
     _put(table, k, potential)
 
 
-def table_of(potentials: Sequence[PairPotential]) -> Any:
-    """Return the table of compiled potentials; it is good as long as these functions are, in this process."""
-    table = np.zeros(WORDS * len(potentials), dtype=np.int64)
-    for k, potential in enumerate(potentials):
-        put_pointer(table, k, potential)
+@jit(types.void(PAIR_POINTERS, types.int64, EVENT_POINTER))
+def put_event(table: Any, k: int, function: Callable[..., float]) -> None:
+    """Put what an event watches at the k-th place of a table."""
+    _put_event(table, k, function)
+
+
+def table_of(functions: Sequence[Callable[..., Any]], put: Callable[..., None] = put_pointer) -> Any:
+    """Return the table of compiled functions; it is good as long as these are, in this process."""
+    table = np.zeros(WORDS * len(functions), dtype=np.int64)
+    for k, function in enumerate(functions):
+        put(table, k, function)
     return table

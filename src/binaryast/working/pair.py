@@ -48,7 +48,11 @@ class WorkingPair(Working):
             self.state[MOMENTA[i] : MOMENTA[i] + 3] = body.si.moments * spin[i]
         check_gravity(system, state)
         if np.any(self.state[layout.POSITION : layout.POSITION + 3]):
-            prepare(self.state, self.attraction, self.parameters)
+            self.exert()
+
+    def exert(self) -> None:
+        """Fill in what the motion in the state exerts."""
+        prepare(self.state, self.attraction, self.parameters)
 
     def from_rows(self, rows: Floats, time: Floats) -> Motion:
         """Return the inertial motion of both bodies from saved starts of working states at times since the start."""
