@@ -1,6 +1,7 @@
 """What happens on the arc of a long step: contact, events, the closest approach, for solvers that know their arcs."""
 
 from collections.abc import Callable
+from functools import partial
 from itertools import combinations
 from typing import NamedTuple
 
@@ -9,7 +10,7 @@ import numpy as np
 from binaryast.events import Event
 from binaryast.kernels.clearance import least_clearance
 from binaryast.kernels.contact import HEADER, RADIUS
-from binaryast.locating import within
+from binaryast.locating import Root, findings, resolve, within
 from binaryast.outcome import Happening
 from binaryast.units import Floats
 from binaryast.watchlist import Places, Watchlist
@@ -132,24 +133,28 @@ class ArcLookout:
 
     def _events(self, arc: Arc, end: float) -> Event | None:
         """Keep the events up to a time, in order; return the one that ends the run."""
-        found: list[Happening] = []
-        by = {}
-        for k in range(len(self.watchlist.watched)):
-            event, period = self.watchlist.event(k), self.watchlist.watched[k].period
+        watchlist, seen = self.watchlist, np.nan
+        if not watchlist:
+            return None
 
-            def value(time: float, k: int = k) -> float:
-                return self.watchlist.value(k, self.begin + time, self.look(arc.at(time)))
+        def value(k: int, time: float) -> float:
+            nonlocal seen
+            if time != seen:  # all functions of one moment take one look
+                self.look(arc.at(time))
+                seen = time
+            return watchlist.value(k, self.begin + time, self.places)
 
-            looks, accuracy = max(LEAST_LOOKS, self.watchlist.looks(end - arc.begin)), self.watchlist.accuracy(k)
-            for root in within(value, arc.begin, end, looks, accuracy, event.direction, period):
-                if root.time > START * (arc.end - arc.begin):
-                    variables = np.array(arc.at(root.time))
-                    found.append(Happening(self.watchlist.owners[k], self.begin + root.time, root.direction, variables))
-                    by[id(found[-1])] = event
-        for one in sorted(found, key=lambda one: one.time):
-            self.happened.append(one)
-            if by[id(one)].terminal:
-                return by[id(one)]
+        found: list[tuple[Root, int]] = []
+        looks = max(LEAST_LOOKS, watchlist.looks(end - arc.begin))
+        for finding in findings(value, watchlist.marks(), arc.begin, end, looks):
+            k = int(finding[0])
+            roots = resolve(partial(value, k), finding, watchlist.event(k).direction, watchlist.accuracy(k))
+            found += [(root, k) for root in roots if root.time > START * (arc.end - arc.begin)]
+        for root, k in sorted(found):
+            variables = np.array(arc.at(root.time))
+            self.happened.append(Happening(watchlist.owners[k], self.begin + root.time, root.direction, variables))
+            if watchlist.event(k).terminal:
+                return watchlist.event(k)
         return None
 
     def _approach(self, arc: Arc, before: Places, after: Places, end: float) -> None:

@@ -11,6 +11,7 @@ from binaryast.schedule import Segment
 from binaryast.stepping import SteppedRun
 from binaryast.units import Floats
 
+MOST_STEPS = 20_000  # between rows: more are not followed again
 LOOKS = 4  # at each of the two steps about it
 
 
@@ -20,7 +21,7 @@ def refine(run: SteppedRun) -> None:
     The motion is followed again to there from the saved row before; this is aside from the run.
     """
     place = _place(run)
-    if place is None:
+    if place is None or place[0].stride > MOST_STEPS:
         return
     segment, begin, steps, row = place
     w = run.working

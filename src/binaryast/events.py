@@ -487,8 +487,15 @@ def event(function: Function) -> Function:
 KINDS: dict[str, type[Event]] = {kind.__name__: kind for kind in (Contact, Separation, Escape, PlaneCrossing, Crossing)}
 
 
+def through(events: Sequence[Event]) -> bool:
+    """Whether some bodies may go through each other, so that steps do not look for contact by themselves."""
+    return any(isinstance(event, Contact) and not event.terminal for event in events)
+
+
 def checked(events: Any, system: System) -> tuple[Event, ...]:
     """Return events that can happen to a system.
+
+    Where two bodies may go through each other, the contacts of all others become events that end the run.
 
     Raises
     ------
@@ -504,4 +511,8 @@ def checked(events: Any, system: System) -> tuple[Event, ...]:
             one.watched(system)
         except InputError as error:
             raise InputError(f"events[{i}]: {error}") from None
-    return tuple(events)
+    if not through(events):
+        return tuple(events)
+    known = {pair for one in events if isinstance(one, Contact) for pair in one.pairs(system)}
+    others = [(pair.primary, pair.secondary) for pair in system.pairs]
+    return (*events, *(Contact(pair) for pair in others if pair not in known))

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from binaryast.kernels.events.notice import DIRECTION, LOOKS, MARKS, NOTHING, PASS, PERIOD, TIMES, VALUES, notice
+from binaryast.kernels.events.notice import DIRECTION, LOOKS, MARKS, NOTHING, PASS, TIMES, VALUES, notice
+from binaryast.units import Floats
 
 EPSILON = 2.0**-52
 MOST_LOOKS = 100  # for one root, which needs about ten
@@ -94,26 +95,30 @@ def looks_within(count: int) -> list[float]:
     return [EDGE, *(k / count for k in range(1, count)), 1.0 - EDGE, 1.0]
 
 
+def findings(
+    value: Callable[[int, float], float], marks: Floats, begin: float, end: float, count: int
+) -> list[list[float]]:
+    """Return what is found in an interval by ``count`` looks at several functions, of which there are fresh marks."""
+    found: list[list[float]] = []
+    for fraction in [0.0, *looks_within(count)]:
+        when = end if fraction == 1.0 else begin + fraction * (end - begin)
+        for k in range(len(marks)):
+            kind = notice(marks, k, when, value(k, when))
+            if kind != NOTHING:
+                found.append([float(k), kind, *marks[k, TIMES : VALUES + 3].tolist()])
+    return found
+
+
 def within(
-    g: Callable[[float], float],
-    begin: float,
-    end: float,
-    count: int,
-    accuracy: float,
-    direction: int = 0,
-    period: float = 0.0,
+    g: Callable[[float], float], begin: float, end: float, count: int, accuracy: float, direction: int = 0
 ) -> list[Root]:
-    """Return the roots in an interval, in order of time, by ``count`` looks.
+    """Return the roots of a function in an interval, in order of time, by ``count`` looks.
 
     Each is found, also two that are near each other, where g turns at most once in three looks.
     """
     marks = np.zeros((1, MARKS))
-    marks[0, DIRECTION], marks[0, PERIOD] = direction, period
+    marks[0, DIRECTION] = direction
     roots: list[Root] = []
-    for fraction in [0.0, *looks_within(count)]:
-        when = end if fraction == 1.0 else begin + fraction * (end - begin)
-        kind = notice(marks, 0, when, g(when))
-        if kind != NOTHING:
-            finding = [0.0, kind, *marks[0, TIMES : VALUES + 3].tolist()]
-            roots += resolve(g, finding, direction, accuracy)
+    for finding in findings(lambda _, time: g(time), marks, begin, end, count):
+        roots += resolve(g, finding, direction, accuracy)
     return sorted(roots)

@@ -1,23 +1,25 @@
 """Looks within compiled steps: where the bodies are a time after a step began, and the events of a run by steps."""
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from binaryast.integrators import Stepping
 from binaryast.kernels import loop
-from binaryast.kernels.events.looking import ORIGINS
+from binaryast.kernels.events.looking import ORIGINS, POTENTIAL, STEP, VIEWING, put_view
 from binaryast.kernels.events.notice import notice
-from binaryast.kernels.pointers import put_event, table_of
+from binaryast.kernels.pointers import WORDS, put_event, put_pointer, table_of
 from binaryast.kernels.status import COMPLETED, NOT_FINITE
-from binaryast.locating import EDGE, Root, resolve, within
+from binaryast.locating import EDGE, Root, findings, resolve
 from binaryast.schedule import Segment
 from binaryast.units import Floats, brief
 from binaryast.watchlist import Places, Watchlist
 from binaryast.working import Working
 
 NO_CHANGE = np.zeros(0)
+NO_FUNCTIONS = np.zeros(0, dtype=np.int64)
 START = 1e-9  # of a step: what is as near to the start of a run is no event, but where it starts
 
 
@@ -36,7 +38,13 @@ class Looker:
         else:
             from binaryast.kernels.pair import looking  # type: ignore[no-redef]
         self.kernels: Any = looking
+        self.potentials = working.attraction if working.inertial else NO_FUNCTIONS
         self.kernel = integrator.kernel(inertial=working.inertial)
+        self.functions = np.zeros(3 * WORDS, dtype=np.int64)
+        looking.put_step(self.functions, STEP, self.kernel)
+        put_view(self.functions, VIEWING, looking.view)
+        if not working.inertial:
+            put_pointer(self.functions, POTENTIAL, working.attraction)
         self.scheme = integrator.shares.shares
         changed = integrator.changed
         self.change = NO_CHANGE if changed is None else np.ascontiguousarray(changed.shares)
@@ -55,12 +63,11 @@ class Looker:
     def _look(self, origin: Floats, after: float) -> int:
         w = self.working
         status: int = self.kernels.look(
-            self.kernel,
-            self.kernels.view,
+            self.functions,
             self.scheme,
             self.change,
             self.back,
-            w.attraction,
+            self.potentials,
             w.parameters,
             w.constants,
             w.shares,
@@ -155,34 +162,29 @@ class Lookout:
 
     def resolve(self, count: int, steps: int) -> list[Found]:
         """Return the roots of the findings after so many steps, in order of time, those at the very start left out."""
-        found: list[Found] = []
-        for finding in self.findings[:count].tolist():
-            k = int(finding[0])
-            value = self._function(k, steps)
-            for root in resolve(value, finding, self.watchlist.event(k).direction, self.watchlist.accuracy(k)):
-                value(root.time)
-                found.append(Found(k, root, self.looker.scratch.copy()))
-        return self._in_order(found)
+        return self._roots(self.findings[:count].tolist(), lambda k: self._function(k, steps))
 
     def within(self, length: float) -> list[Found]:
         """Return the roots in a time after the last step, in order, those at the very start of the run left out."""
         begin, origin = self.time_of(self.watches[-1][loop.STEPS]), self.origins[-1].copy()
+
+        def value(k: int, time: float) -> float:
+            self.looker.look(origin, time - begin)
+            return self.watchlist.value(k, time, self.looker.places)
+
+        looks = self.watchlist.looks(length)
+        found = findings(value, self.watchlist.marks(), begin, begin + length, looks)
+        return self._roots(found, lambda k: partial(value, k))
+
+    def _roots(self, findings: list[list[float]], function: Callable[[int], Callable[[float], float]]) -> list[Found]:
+        """Return the roots of findings in order of time, those at the very start of the run left out."""
         found: list[Found] = []
-        for k in range(len(self.marks)):
-            event, period = self.watchlist.event(k), self.watchlist.watched[k].period
-
-            def value(time: float, k: int = k) -> float:
-                self.looker.look(origin, time - begin)
-                return self.watchlist.value(k, time, self.looker.places)
-
-            looks, accuracy = self.watchlist.looks(length), self.watchlist.accuracy(k)
-            for root in within(value, begin, begin + length, looks, accuracy, event.direction, period):
+        for finding in findings:
+            k = int(finding[0])
+            value = function(k)
+            for root in resolve(value, finding, self.watchlist.event(k).direction, self.watchlist.accuracy(k)):
                 value(root.time)
                 found.append(Found(k, root, self.looker.scratch.copy()))
-        return self._in_order(found)
-
-    def _in_order(self, found: list[Found]) -> list[Found]:
-        """Return roots in order of time, those at the very start of the run left out."""
         least = self.begin + START * min(self.segment.step, self.watchlist.interval)
         return sorted((one for one in found if one.root.time > least), key=lambda one: one.root.time)
 

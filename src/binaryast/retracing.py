@@ -8,6 +8,7 @@ import numpy as np
 from astropy.units import Quantity
 
 from binaryast.errors import BinaryastWarning, InputError
+from binaryast.events import Contact
 from binaryast.integrators import Integrator
 from binaryast.propagation import propagate
 from binaryast.state import State
@@ -67,7 +68,11 @@ def _row(run: Trajectory, time: float, side: str) -> TrajectoryFloats:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", BinaryastWarning)  # the run itself has said what there is to say
         again = propagate(
-            run.system, run[before], duration=quantity(length, "s"), integrator=_by_steps_up_to(run, length)
+            run.system,
+            run[before],
+            duration=quantity(length, "s"),
+            integrator=_by_steps_up_to(run, length),
+            events=[one for one in run.watched if isinstance(one, Contact) and not one.terminal],
         )
     found = TrajectoryFloats(*(array[-1:] for array in again.si))
     return found._replace(time=np.array([time]))

@@ -21,6 +21,7 @@ def summary(run: Any) -> str:
         f"{run.wall_time.value:.2g} s{speed}",
         *_distances(run),
         *(f"  {line}" for line in kicks(run)),
+        *(f"  {line}" for line in happenings(run)),
         f"  largest errors: energy {run.max_relative_energy_error:.4e} of |E0| "
         f"({run.max_energy_error_over_potential:.2e} of |U0|), "
         f"momentum angular {run.max_relative_angular_momentum_error:.1e}, "
@@ -46,6 +47,20 @@ def kicks(run: Any) -> list[str]:
         speed = float(np.linalg.norm(impulse.velocity_change(run.system).value))
         after = span(impulse.time.value) + (", not reached" if impulse.time.value > run.si.time[-1] else "")
         lines.append(f"{type(impulse).__name__} on {name} after {after}: its velocity changes by {speed:.5g} m/s")
+    return lines
+
+
+def happenings(run: Any) -> list[str]:
+    """Return a line for each event that was looked for: how often it happened, and when first and last."""
+    lines = []
+    for i, event in enumerate(run.watched):
+        times = run.occurrences.time[run.occurrences.event == i]
+        often = {0: "never", 1: "once"}.get(len(times), f"{len(times)} times")
+        when = f", after {span(times[0])}" if len(times) else ""
+        last = f", last after {span(times[-1])}" if len(times) > 1 else ""
+        lines.append(
+            f"{event.title(run.system)}: {often}{when.replace('after', 'first after') if last else when}{last}"
+        )
     return lines
 
 

@@ -17,12 +17,15 @@ PLAIN = (  # arguments that have no unit
     *("accuracy", "near", "far", "parallel"),
     *("order", "scheme", "method", "rtol", "atol", "tolerance"),
     *("body", "beta"),
+    *("bodies", "origin", "axes", "normal", "quantity", "direction", "terminal"),
     *("eccentricity", "about", "R", "R2", "attitude", "epoch", "frame"),
 )
 EXAMPLES = {  # what a text with a unit looks like
     "time": "1 d",
     "delta_v": "[0, -2.6, 0] mm / s",
     "point": "[10, 55, 0] m",
+    "value": "5 deg",
+    "distance": "2 km",
     "mass": "2e9 kg",
     "density": "2000 kg / m3",
     "offset": "[60, 0, 0] m",

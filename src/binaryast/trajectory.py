@@ -95,7 +95,8 @@ class Trajectory(Value):
         Over every step. Linear momentum is relative to sum m |v|; in the relative frame it is kept by construction,
         and its figure is the round-off of the saved rows.
     closest_approach, closest_approach_time : Quantity
-        Smallest distance of any two mass centres, also within steps, and when.
+        Smallest distance of any two mass centres, also within steps (unless rows are more than 20 000 steps apart), and
+        when.
     max_next_degree_term : float or None
         Largest size, at saved rows, of the next two degrees of U that the gravity of a pair leaves out, over G m1 m2/r.
         It is an estimate of what its cut costs; torques lose more, by (r/size)^2. None of gravity without a cut.

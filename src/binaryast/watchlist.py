@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from binaryast.events import Contact, Event, Watched
+from binaryast.events import Contact, Event, Watched, through
 from binaryast.kernels.events.notice import DIRECTION, FINDING, MARKS, PERIOD
 from binaryast.rates import rates
 from binaryast.state import State
@@ -36,7 +36,7 @@ class Watchlist:
     Attributes
     ----------
     events : tuple of Event
-        As the user gave them, and a contact that ends the run for each pair that they do not speak of.
+        As they are asked for.
     by_steps : bool
         Whether steps look for contact by themselves, to end the run.
     watched, owners : list
@@ -46,13 +46,8 @@ class Watchlist:
     """
 
     def __init__(self, events: Sequence[Event], system: System, state: State) -> None:
-        through = [event for event in events if isinstance(event, Contact) and not event.terminal]
         self.system, self.events = system, tuple(events)
-        if through:
-            spoken_of = {pair for event in events if isinstance(event, Contact) for pair in event.pairs(system)}
-            others = [(pair.primary, pair.secondary) for pair in system.pairs]
-            self.events += tuple(Contact(pair) for pair in others if pair not in spoken_of)
-        self.by_steps = not through  # whether contact is looked for by the steps themselves
+        self.by_steps = not through(events)
         self.watched: list[Watched] = []
         self.owners: list[int] = []
         self.interval = inf

@@ -1,10 +1,16 @@
 """Where several bodies are, for what events watch, also within a step."""
 
+from collections.abc import Callable
+from typing import Any
+
+from numba import types
+
 from binaryast.kernels.arrays import matrix_at, vector_at
 from binaryast.kernels.bodies.layout import INVERSE, attitude_of, body_constants, momentum_of, velocity_of
 from binaryast.kernels.events import looking
 from binaryast.kernels.events.places import put_body
-from binaryast.kernels.jit import PAIR_POINTERS, VIEW, Array, jit
+from binaryast.kernels.jit import PAIR_POINTERS, VIEW, Array, jit, step_signature
+from binaryast.kernels.pointers import access
 
 
 @jit(VIEW)
@@ -22,4 +28,51 @@ def view(
         put_body(attitude, spin, body, r, momentum, constants, body_constants(body) + INVERSE)
 
 
-look = jit(looking.look_signature(PAIR_POINTERS))(looking.look)
+STEP_POINTER = types.FunctionType(step_signature(PAIR_POINTERS))
+_put_step, step_at = access(STEP_POINTER)
+
+
+@jit(types.void(PAIR_POINTERS, types.int64, STEP_POINTER))
+def put_step(table: Any, k: int, step: Callable[..., int]) -> None:
+    """Put a step at the k-th place of a table."""
+    _put_step(table, k, step)
+
+
+@jit(looking.look_signature())
+def look(
+    functions: Array,
+    scheme: Array,
+    change: Array,
+    back: Array,
+    potentials: Array,
+    parameters: Array,
+    constants: Array,
+    shares: Array,
+    origin: Array,
+    scratch: Array,
+    h: float,
+    position: Array,
+    velocity: Array,
+    attitude: Array,
+    spin: Array,
+) -> int:
+    """Look at the bodies a time h after ``origin``, by the functions of a table; return the status."""
+    status: int = looking.look(
+        step_at(functions, looking.STEP),
+        looking.view_at(functions, looking.VIEWING),
+        scheme,
+        change,
+        back,
+        potentials,
+        parameters,
+        constants,
+        shares,
+        origin,
+        scratch,
+        h,
+        position,
+        velocity,
+        attitude,
+        spin,
+    )
+    return status

@@ -12,22 +12,32 @@ from numba import types
 
 from binaryast.kernels import loop
 from binaryast.kernels.events.notice import LOOKS, NOTHING, notice
-from binaryast.kernels.jit import ARRAY, PAIR_POINTERS, PLACES, ROWS, VIEW, Array, jit, step_signature
-from binaryast.kernels.pointers import event_at
+from binaryast.kernels.jit import ARRAY, PAIR_POINTERS, PLACES, ROWS, VIEW, Array, jit
+from binaryast.kernels.pointers import access, event_at
 from binaryast.kernels.status import COMPLETED
 
 ORIGINS = 3  # where the last two steps began, and where the last one ended
 
 
-def look_signature(attraction: Any) -> Any:
-    """Return the signature of `look` for one potential or a table of them."""
+# What a look is made by, in a table of pointers.
+STEP, VIEWING, POTENTIAL = 0, 1, 2
+_put_view, view_at = access(types.FunctionType(VIEW))
+
+
+@jit(types.void(PAIR_POINTERS, types.int64, types.FunctionType(VIEW)))
+def put_view(table: Any, k: int, view: Callable[..., None]) -> None:
+    """Put what looks where the bodies are at the k-th place of a table."""
+    _put_view(table, k, view)
+
+
+def look_signature() -> Any:
+    """Return the signature of a look by functions in a table."""
     return types.int64(
-        types.FunctionType(step_signature(attraction)),
-        types.FunctionType(VIEW),
+        PAIR_POINTERS,  # step, view, potential
         ARRAY,  # scheme
         ARRAY,  # change
         ARRAY,  # back
-        attraction,
+        PAIR_POINTERS,  # potentials of several bodies
         ARRAY,  # parameters
         ARRAY,  # constants
         ARRAY,  # shares of the mass
@@ -38,6 +48,7 @@ def look_signature(attraction: Any) -> Any:
     )
 
 
+@jit()
 def look(
     step: Callable[..., int],
     view: Callable[..., None],
@@ -102,8 +113,8 @@ def move_up(rows: Array, newest: Array) -> None:
         rows[ORIGINS - 1, i] = newest[i]
 
 
-def looking(advance: Callable[..., int], look: Callable[..., int]) -> Callable[..., int]:
-    """Return steps that are looked at, of the loop of steps and the look of a pair or of several bodies."""
+def looking(advance: Callable[..., int]) -> Callable[..., int]:
+    """Return steps that are looked at, of the loop of steps of a pair or of several bodies."""
 
     def advance_looking(
         step: Callable[..., int],

@@ -2,7 +2,6 @@
 
 from binaryast.kernels.events import looking
 from binaryast.kernels.jit import PAIR_POINTER, jit
-from binaryast.kernels.pair.looking import look
 from binaryast.kernels.pair.loop import advance
 
-advance_looking = jit(looking.looking_signature(PAIR_POINTER))(looking.looking(advance, look))
+advance_looking = jit(looking.looking_signature(PAIR_POINTER))(looking.looking(advance))
