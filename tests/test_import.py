@@ -59,6 +59,7 @@ def test_every_public_name_is_documented_with_an_example() -> None:
         "mascons",
         "Impulse",
         "Impact",
+        "retrace",
     ):
         assert ">>>" in getattr(ba, name).__doc__
     for function in (ba.equations.continuous, ba.equations.discrete, ba.State.from_orbits, ba.State.circular_orbit):

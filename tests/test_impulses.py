@@ -112,7 +112,7 @@ def test_figures_are_the_largest_of_all_legs(didymos: ba.System) -> None:
     assert abs(run.energy[-1] / run.energy[0] - 1) > 1e-6
     assert alone.closest_approach < before.closest_approach - 20 * u.m
     assert run.closest_approach.value == pytest.approx(alone.closest_approach.value, rel=1e-14)
-    assert run.closest_approach_time == alone.closest_approach_time + 1 * u.day
+    assert (run.closest_approach_time - alone.closest_approach_time).value == pytest.approx(86400, rel=1e-12)
 
 
 def test_an_accuracy_is_that_of_each_leg() -> None:
@@ -232,7 +232,7 @@ def test_a_run_that_ends_early_ends_its_legs(didymos: ba.System) -> None:
     assert len(turned.legs) == 2
     end = turned.si.time[-1]
     assert 3600 < end < 86400
-    assert turned.message.endswith(f"{end:g} s")
+    assert turned.message.endswith(f"{end:.9g} s")
     assert turned.impulses == (stop, later)
     assert "after 20 d, not reached" in turned.summary()
 

@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, Any
 from binaryast import constants as _constants
 
 if TYPE_CHECKING:
-    from binaryast import analysis, catalogue, constants, equations, errors, plotting, scenario
+    from binaryast import analysis, catalogue, constants, equations, errors, events, plotting, scenario
     from binaryast.adaptive import Adaptive
     from binaryast.bodies import RigidBody
     from binaryast.coefficients import InertiaIntegrals, StokesCoefficients
     from binaryast.elements import Orbit
     from binaryast.errors import BinaryastError
+    from binaryast.events import event
     from binaryast.fields import GravityField, polyhedron_field
     from binaryast.filling import mascons
     from binaryast.gravity import (
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from binaryast.polyhedron_pair import PolyhedronPair
     from binaryast.polyhedron_point import PolyhedronPoint
     from binaryast.propagation import propagate
+    from binaryast.retracing import retrace
     from binaryast.shapes import Dumbbell, Ellipsoid, Point, PointCloud, Shape, Sphere
     from binaryast.state import RelativeState, State
     from binaryast.surfaces import Surface, surface
@@ -105,15 +107,17 @@ _HOMES = {
     "Trajectory": "trajectory",
     "Union": "unions",
     "Yorp": "perturbations",
+    "event": "events",
     "external_potential": "perturbations",
     "force": "perturbations",
     "mascons": "filling",
     "pair_potential": "gravity",
     "polyhedron_field": "fields",
     "propagate": "propagation",
+    "retrace": "retracing",
     "surface": "surfaces",
 }
-_MODULES = ("analysis", "catalogue", "constants", "equations", "errors", "plotting", "scenario")
+_MODULES = ("analysis", "catalogue", "constants", "equations", "errors", "events", "plotting", "scenario")
 
 __all__ = [
     "LGVI",
@@ -170,6 +174,8 @@ __all__ = [
     "constants",
     "equations",
     "errors",
+    "event",
+    "events",
     "external_potential",
     "force",
     "mascons",
@@ -177,6 +183,7 @@ __all__ = [
     "plotting",
     "polyhedron_field",
     "propagate",
+    "retrace",
     "scenario",
     "surface",
 ]

@@ -13,10 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from binaryast.dense import difference
 from binaryast.errors import AccuracyError
 from binaryast.integrators import KeplerSplitting, Splitting, Stepping
 from binaryast.outcome import Outcome
-from binaryast.trials import LARGE, REFERENCE, ROWS, SMALL, Trials, at_end, between, equal, errors, whole
+from binaryast.trials import LARGE, REFERENCE, ROWS, SMALL, Trials, at_end, between, equal, whole
 from binaryast.units import quantity, span
 from binaryast.working import Motion
 
@@ -165,7 +166,7 @@ def _fitted(trials: Trials, method: Stepping, goal: Goal, best: Candidate | None
 def _error(trials: Trials, method: Stepping, goal: Goal, count: int) -> float:
     """Return what the error of a method will be at the end of the run, by so many steps in the trial."""
     motion = trials.motion(method, equal(goal.time, count))
-    return inf if motion is None else at_end(errors(motion, goal.reference), goal.end / goal.time)
+    return inf if motion is None else at_end(difference(motion, goal.reference), goal.end / goal.time)
 
 
 def _longer(trials: Trials, method: Stepping, goal: Goal, too_few: int, found: tuple[int, float]) -> tuple[int, float]:
@@ -236,6 +237,6 @@ def estimate(trials: Trials, plan: Plan, outcome: Outcome, accuracy: float) -> E
         sensitivity.refuse(accuracy, float(times[-1]))
     floor = 0.0 if sensitivity is None else sensitivity.floor
     ratio = max(segment.step for segment in segments) / outcome.step
-    apart = float(errors(rows, other)[-LAST:].max())
+    apart = float(difference(rows, other)[-LAST:].max())
     known = abs(ratio**plan.power - 1) if apart < LARGE else 1.0  # of errors that follow the power
     return Estimate(max(plan.error, apart / float(min(max(known, 0.1), MOST_KNOWN))), floor)

@@ -22,6 +22,7 @@ from binaryast.run_options import RUN, is_file, scenario_of, show_warning, start
 if TYPE_CHECKING:
     from binaryast.bodies import RigidBody
     from binaryast.impulses import AnyImpulse
+    from binaryast.occurrences import Occurrence
     from binaryast.state import State
     from binaryast.system import System
     from binaryast.trajectory import Trajectory
@@ -326,6 +327,12 @@ def _shown(impulse: "AnyImpulse") -> dict[str, Any]:
     return {"type": type(impulse).__name__, **numbers}
 
 
+def _happened(run: "Trajectory", one: "Occurrence") -> dict[str, Any]:
+    """Return what happened as plain numbers, in SI."""
+    event = {"type": type(one.event).__name__, "title": one.event.title(run.system)}
+    return event | {"time": float(one.time.value), "direction": one.direction}
+
+
 def _report(run: "Trajectory", output: Path, picture: Path | None, *, as_json: bool) -> None:
     """Print the summary, or one JSON object; where there are impulses, periods are those after the last."""
     from binaryast.trajectory import FIGURES
@@ -347,6 +354,7 @@ def _report(run: "Trajectory", output: Path, picture: Path | None, *, as_json: b
             "periods": periods,
             "impulses": [_shown(one) for one in run.impulses],
             "legs": legs,
+            "events": [_happened(run, one) for one in run.events],
             "file": str(output),
             "picture": None if picture is None else str(picture),
             "provenance": run.provenance,

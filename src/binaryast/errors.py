@@ -56,6 +56,10 @@ class GravityWarning(BinaryastWarning):
     """A gravity that is cut at a low degree for bodies so near to each other."""
 
 
+class InterpolationWarning(BinaryastWarning):
+    """Rows that are too far apart for what is interpolated between them."""
+
+
 class MeshWarning(BinaryastWarning):
     """A mesh that was mended on request: what was done to it."""
 

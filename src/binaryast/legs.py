@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from binaryast.impulses import AnyImpulse
+from binaryast.occurrences import OccurrenceFloats
 from binaryast.schedule import Leg
 from binaryast.trajectory import FIGURES, Trajectory, TrajectoryFloats
 from binaryast.units import quantity
@@ -50,6 +51,8 @@ def joined(runs: Sequence[Trajectory], impulses: tuple[AnyImpulse, ...]) -> Traj
         wall_time=quantity(sum(run.wall_time.value for run in runs), "s"),
         choice="; then ".join(dict.fromkeys(run.choice for run in moved)),
         impulses=impulses,
+        watched=max((run.watched for run in runs), key=len),
+        occurrences=OccurrenceFloats.joined([run.occurrences for run in runs if run.occurrences is not None]),
         **figures,
     )
 

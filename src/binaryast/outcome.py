@@ -1,12 +1,15 @@
 """What a run hands over to be reported, however it was followed."""
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from binaryast.errors import ContactError
+from binaryast.events import Event
 from binaryast.gravity import Gravity
 from binaryast.kernels import loop
+from binaryast.occurrences import OccurrenceFloats
 from binaryast.system import System
 from binaryast.units import Floats
 from binaryast.working import Motion
@@ -63,6 +66,8 @@ class Outcome:
         How it ended.
     steps, step, wall_time : int, float, float
         Steps taken, their size [s], and how long they took [s].
+    occurrences : OccurrenceFloats
+        What happened, in order of time.
     pressed : bool
         Whether there was a Ctrl-C, be it too late to end it early.
     """
@@ -76,13 +81,34 @@ class Outcome:
     steps: int
     step: float
     wall_time: float
+    occurrences: OccurrenceFloats
     pressed: bool = False
 
 
 def contact_message(system: System, pair: int, after: float) -> str:
     """Return what is said of a contact."""
     primary, secondary = (system.names[i] for i in system.pairs[pair][:2])
-    return f"{secondary} touched {primary} in the step that ends at {after:g} s"
+    return f"{secondary} touched {primary} after {after:.9g} s"
+
+
+class Happening(NamedTuple):
+    """What happened, however the run was followed: which event, when, in which direction, and the variables then."""
+
+    event: int
+    time: float
+    direction: int
+    variables: Floats
+
+
+def occurrences(happened: list[Happening], motion: Motion) -> OccurrenceFloats:
+    """Return what happened, with where the bodies were then."""
+    event, time, direction = (np.array([one[k] for one in happened], dtype=float) for k in range(3))
+    return OccurrenceFloats(event, time, direction, *motion[:4])
+
+
+def event_message(event: Event, system: System, after: float) -> str:
+    """Return what is said of an event that ends a run."""
+    return f"{event.title(system)} after {after:.9g} s"
 
 
 def not_finite_message(what: str, system: System) -> str:

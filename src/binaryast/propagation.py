@@ -13,22 +13,26 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from astropy.units import Quantity
 
-from binaryast import choosing, constants, legs
+from binaryast import choosing, closest, constants, legs
 from binaryast.errors import AccuracyError, BinaryastError, EndWarning, GravityWarning, InputError, StepWarning
+from binaryast.events import Contact, Event, checked
 from binaryast.gravity import LARGEST_DEGREE
 from binaryast.impulses import AnyImpulse, in_order
 from binaryast.integrators import Integrator, RungeKutta, Splitting, Stepping, Taylor
 from binaryast.kernels import loop
+from binaryast.kernels.clearance import least_clearance
 from binaryast.kernels.jit import source_hash
 from binaryast.outcome import Outcome, interruption_message
 from binaryast.progress import bar, said_if_long
+from binaryast.rates import rates
 from binaryast.schedule import Leg, schedule
 from binaryast.state import State
 from binaryast.stepping import SteppedRun, turn_error
 from binaryast.system import Pair, System
 from binaryast.trajectory import Trajectory, TrajectoryFloats
-from binaryast.trials import Trials, rates
+from binaryast.trials import Trials
 from binaryast.units import Floats, brief, numbers, quantity, span, to_si
+from binaryast.working.base import surfaces
 
 if TYPE_CHECKING:
     from binaryast.solving import SolvedRun
@@ -44,11 +48,12 @@ TRY_OUT = Splitting(quantity(1.0, "s"))
 
 
 class Method(NamedTuple):
-    """How a run is to be followed: by an integrator, or to an accuracy; and whether a bar is shown."""
+    """How a run is to be followed, by an integrator or to an accuracy; whether with a bar; what is looked for."""
 
     integrator: Integrator | None
     accuracy: float
     progress: bool
+    events: tuple[Event, ...] = ()
 
 
 class Followed(NamedTuple):
@@ -68,6 +73,7 @@ def propagate(
     accuracy: float | None = None,
     save_every: Quantity | None = None,
     impulses: Sequence[AnyImpulse] = (),
+    events: Sequence[Event] = (),
     progress: bool = False,
 ) -> Trajectory:
     """Follow a system through time.
@@ -96,13 +102,19 @@ def propagate(
         the run into legs, `Trajectory.legs`, each an ordinary run from the changed state; the rows before and after
         are both kept, at the same time. Figures of the trajectory are the largest of all legs: errors of energy and
         momentum are those from the start of each leg, and an accuracy is that of each leg by itself.
+    events : sequence of Event
+        What to look for, of `binaryast.events`: each time it happens is kept in `Trajectory.events` with the state
+        there, and a terminal event ends the run. The motion is the same, bit for bit, as without. What happens at the
+        very start does not count, nor what an impulse jumps over. That two bodies touch ends a run anyway, unless there
+        is a ``Contact(terminal=False)``.
     progress : bool
         Whether to show a bar with the simulated and the remaining time, on standard error.
 
     Returns
     -------
     Trajectory
-        Also where the run ends early, by contact, by Ctrl-C or because a step had no solution: its ``status`` says so.
+        Also where the run ends early, by contact or another event, by Ctrl-C or because a step had no solution: its
+        ``status`` says so.
 
     Raises
     ------
@@ -143,8 +155,9 @@ def propagate(
         raise InputError(
             f"propagate: got integrator={brief(integrator)} and accuracy={brief(accuracy)}: give one of them"
         )
-    method = Method(integrator, _accuracy(1e-6 if accuracy is None else accuracy), progress)
     _check_kinds(system, state, integrator or TRY_OUT)
+    wanted = _accuracy(1e-6 if accuracy is None else accuracy)
+    method = Method(integrator, wanted, progress, checked(events, system))
     end = float(to_si(duration, "s", "duration", sign="positive"))
     interval = None if save_every is None else float(to_si(save_every, "s", "save_every", sign="positive"))
     impulses = in_order(impulses, system, end)
@@ -166,11 +179,17 @@ def propagate(
             if not leg.begin:
                 raise
             raise type(error)(f"from {span(leg.begin)} on, after an impulse: {error}") from None
-        runs.append(_trajectory(system, state, *followed))
+        runs.append(_trajectory(system, state, method.events, *followed))
         pressed = followed.outcome.pressed
         if runs[-1].status != "completed":
             break
     return legs.joined(runs, impulses)
+
+
+def follow_leg(system: System, state: State, leg: Leg, integrator: Integrator, events: Sequence[Event]) -> Trajectory:
+    """Return a run along a leg by itself: what acts from outside knows the time when it begins."""
+    method = Method(integrator, 0.0, False, checked(events, system))
+    return _trajectory(system, state, method.events, *_follow(system, state, leg, method))
 
 
 def _accuracy(value: Any) -> float:
@@ -190,10 +209,10 @@ def _follow(system: System, state: State, leg: Leg, method: Method) -> Followed:
     _check_kinds(system, state, method.integrator)
     compiling = "heyoka compiles the equations, once for all systems of one kind; it may take some seconds"
     with said_if_long(compiling, method.progress and isinstance(method.integrator, Taylor)):
-        run = _run(system, state, method.integrator, leg)
+        run = _run(system, state, method.integrator, leg, method.events)
     with bar(leg.whole, method.progress, leg.begin) as show:
         run.go(show)
-    return Followed(run.outcome(), method.integrator, {})
+    return Followed(_outcome(run), method.integrator, {})
 
 
 def _one_row(system: System, state: State, leg: Leg) -> Outcome:
@@ -210,16 +229,15 @@ def _interrupted(system: System, state: State, leg: Leg) -> Followed:
 def _to_accuracy(system: System, state: State, leg: Leg, method: Method) -> Followed:
     """Follow a leg to an accuracy: plan, run, estimate, and again with a shorter step where it is not reached."""
     asked, length = method.accuracy, leg.length
-    SteppedRun(
-        system, state, TRY_OUT, schedule(leg, leg.whole), leg.begin
-    )  # what is wrong with the start is said first
+    SteppedRun(system, state, TRY_OUT, schedule(leg, leg.whole), leg.begin)  # first says what is wrong with the start
     trials = Trials(system, state, leg.begin)
     plan = choosing.plan(trials, length, asked, min(length / 4, leg.interval or length))
     for _ in range(ATTEMPTS):
-        run = SteppedRun(system, state, plan.integrator, schedule(leg, plan.integrator.step.value), leg.begin)
+        segments = schedule(leg, plan.integrator.step.value)
+        run = SteppedRun(system, state, plan.integrator, segments, leg.begin, method.events)
         with bar(leg.whole, method.progress, leg.begin) as show:
             run.go(show)
-        outcome = run.outcome()
+        outcome = _outcome(run)
         about = {"accuracy": asked, "choice": plan.reason}
         if outcome.status != "completed":
             return Followed(outcome, plan.integrator, about)
@@ -241,23 +259,32 @@ def _to_accuracy(system: System, state: State, leg: Leg, method: Method) -> Foll
     )
 
 
-def _run(system: System, state: State, integrator: Integrator, leg: Leg) -> "SteppedRun | SolvedRun | TaylorRun":
+def _outcome(run: "SteppedRun | SolvedRun | TaylorRun") -> Outcome:
+    """Return what has been computed, with the closest approach also where it lies within a step."""
+    if isinstance(run, SteppedRun):
+        closest.refine(run)
+    return run.outcome()
+
+
+def _run(
+    system: System, state: State, integrator: Integrator, leg: Leg, events: tuple[Event, ...]
+) -> "SteppedRun | SolvedRun | TaylorRun":
     """Return the run of an integrator, looked at and ready to go."""
     if isinstance(integrator, Stepping):
         segments = schedule(leg, integrator.step.value)
         longest = max(segment.step for segment in segments)
         _check_turns(system, state, integrator, longest)
         _check_orbits(system, state, integrator, longest)
-        return SteppedRun(system, state, integrator, segments, leg.begin)
+        return SteppedRun(system, state, integrator, segments, leg.begin, events)
     if isinstance(integrator, Taylor):
         from binaryast.taylor.run import TaylorRun
 
-        return TaylorRun(system, state, integrator, leg)
+        return TaylorRun(system, state, integrator, leg, events)
     if not isinstance(integrator, RungeKutta):
         raise InputError(f"integrator: expected one of binaryast's, such as ba.LGVI, got {brief(integrator)}")
     from binaryast.solving import SolvedRun  # a third of a second, needed only here
 
-    return SolvedRun(system, state, integrator, leg)
+    return SolvedRun(system, state, integrator, leg, events)
 
 
 def _check_kinds(system: Any, state: Any, integrator: Any = TRY_OUT) -> None:
@@ -316,7 +343,12 @@ def _check_orbits(system: System, state: State, integrator: Stepping, step: floa
 
 
 def _trajectory(
-    system: System, state: State, outcome: Outcome, integrator: Integrator, asked: dict[str, Any]
+    system: System,
+    state: State,
+    events: tuple[Event, ...],
+    outcome: Outcome,
+    integrator: Integrator,
+    asked: dict[str, Any],
 ) -> Trajectory:
     """Return what has been computed of a run from a state, and warn where it ended early or badly."""
     if outcome.status in ("contact", "failed"):
@@ -346,10 +378,22 @@ def _trajectory(
         steps=outcome.steps,
         step=quantity(outcome.step, "s"),
         wall_time=quantity(outcome.wall_time, "s"),
+        watched=_watched(system, events, outcome),
+        occurrences=outcome.occurrences,
         provenance=provenance() | ({"heyoka": version("heyoka")} if isinstance(integrator, Taylor) else {}),
         **figures,
         **asked,
     )
+
+
+def _watched(system: System, events: tuple[Event, ...], outcome: Outcome) -> tuple[Event, ...]:
+    """Return what was looked for, and the contact that ended a run where it was none of that."""
+    indices = outcome.occurrences.event
+    if len(indices) and int(indices[-1]) >= len(events):
+        position, attitude = outcome.occurrences.position[-1:], outcome.occurrences.attitude[-1:]
+        pair = int(least_clearance(position[0], attitude[0], surfaces(system))[1])
+        events = (*events, Contact(tuple(system.names[i] for i in system.pairs[pair][:2])))
+    return events
 
 
 def _figures(system: System, outcome: Outcome) -> dict[str, Any]:

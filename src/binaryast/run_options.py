@@ -10,6 +10,9 @@ from typing import TYPE_CHECKING, Any
 from binaryast.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from binaryast.events import Event
     from binaryast.gravity import Gravity
     from binaryast.impulses import AnyImpulse
     from binaryast.integrators import Integrator
@@ -51,7 +54,7 @@ def _time(text: str | None, option: str) -> Any:
 def start(options: argparse.Namespace) -> tuple["System", "State", dict[str, Any], Any, Any]:
     """Return what to run: a scenario or the end of an earlier run, with the options in the place of its own values.
 
-    The third of them is how: the integrator or the accuracy, and the impulses, by name.
+    The third of them is how: the integrator or the accuracy, and the impulses and events, by name.
     """
     duration, step, save_every = (
         _time(getattr(options, name), f"--{name.replace('_', '-')}") for name in ("duration", "step", "save_every")
@@ -66,17 +69,28 @@ def start(options: argparse.Namespace) -> tuple["System", "State", dict[str, Any
         pair, start, integrator, accuracy = earlier.system, earlier[-1], earlier.integrator, earlier.accuracy
         reached = earlier.time[-1]
         impulses = [replace(one, time=one.time - reached) for one in earlier.impulses if one.time > reached]
+        events = _known(earlier.watched)
     else:
         entry = scenario_of(options.system)
         pair, start, integrator, accuracy = entry.system, entry.state, entry.integrator, entry.accuracy
         duration, impulses = entry.duration if duration is None else duration, list(entry.impulses)
+        events = list(entry.events)
         save_every = entry.save_every if save_every is None else save_every
     if options.degree is not None:
         pair = replace(pair, gravity=_gravity_of_degree(options.degree))
     if save_every is not None and options.save_every is None and save_every > duration:
         save_every = None  # the scenario's, for its own longer duration
     how = _method(integrator, accuracy, step, options) | {"impulses": _within(impulses, duration)}
+    how |= {"events": events}
     return pair, start, how, duration, save_every
+
+
+def _known(events: "Sequence[Event]") -> "list[Event]":
+    """Return the events of an earlier run without those of functions that are not here, and say which these are."""
+    for one in events:
+        if isinstance(getattr(one, "function", None), str):
+            show_warning(f"the event {one.name} is left out: its function is not known here")  # type: ignore[attr-defined]
+    return [one for one in events if not isinstance(getattr(one, "function", None), str)]
 
 
 def _within(impulses: "list[AnyImpulse]", duration: Any) -> "list[AnyImpulse]":

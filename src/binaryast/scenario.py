@@ -64,6 +64,15 @@ none::
     velocity = "[0, -6, 0] km / s"
     beta = 2                                      # may be left out: 1
     point = "[10, 55, 0] m"                       # so may this: through the mass centre
+
+    [[events]]                                    # or Contact, Separation, Escape, PlaneCrossing: see binaryast.events
+    type = "Crossing"
+    quantity = "radial_velocity"
+    bodies = ["A", "B"]
+    direction = 1                                 # these may be left out
+    terminal = false
+    accuracy = "1 ms"
+    interval = "10 min"
 """
 
 import inspect
@@ -74,7 +83,7 @@ from typing import Any
 
 from astropy.units import Quantity
 
-from binaryast import coefficients, gravity, impulses, perturbations, shapes, unions
+from binaryast import coefficients, events, gravity, impulses, perturbations, shapes, unions
 from binaryast.adaptive import Adaptive
 from binaryast.bodies import RigidBody
 from binaryast.elements import Orbit
@@ -140,6 +149,8 @@ class Scenario(Value):
         How long, and how often to save; ``save_every`` may be None.
     impulses : tuple of Impulse and Impact
         In order of time.
+    events : tuple of Event
+        What is looked for.
     sources : tuple of dict
         ``what``, ``source`` and where known ``uncertainty`` and ``note`` of each number.
     text : str
@@ -155,6 +166,7 @@ class Scenario(Value):
     duration: Quantity
     save_every: Quantity | None
     impulses: tuple[impulses.AnyImpulse, ...]
+    events: tuple[events.Event, ...]
     sources: tuple[dict[str, str], ...] = field(repr=False)
     text: str = field(repr=False)
 
@@ -205,7 +217,8 @@ def loads(text: str, *, name: str, where: str, folder: Path = Path()) -> Scenari
 
 def _scenario(tables: dict[str, Any], name: str, text: str, folder: Path) -> Scenario:
     """Build everything that the tables say."""
-    check_known(tables, ("title", "bodies", "gravity", "perturbations", "state", "run", "impulses", "sources"), "")
+    known = ("title", "bodies", "gravity", "perturbations", "state", "run", "impulses", "events", "sources")
+    check_known(tables, known, "")
     check_needed(tables, ("bodies", "state", "run"), "")
     bodies = tables["bodies"]
     if not isinstance(bodies, list) or not all(isinstance(body, dict) for body in bodies):
@@ -230,6 +243,7 @@ def _scenario(tables: dict[str, Any], name: str, text: str, folder: Path) -> Sce
         duration=duration,
         save_every=time(run["save_every"], "run.save_every") if "save_every" in run else None,
         impulses=_impulses(tables.get("impulses", []), system, float(duration.value)),
+        events=_events(tables.get("events", []), system),
         sources=_sources(tables.get("sources", [])),
         text=text,
     )
@@ -366,6 +380,23 @@ def _impulses(tables: Any, system: System, end: float) -> tuple[impulses.AnyImpu
         raise InputError(f"impulses: expected tables [[impulses]], got {brief(tables)}")
     found = [_typed(table, impulses.KINDS, f"impulses[{i}]") for i, table in enumerate(tables)]
     return impulses.in_order(found, system, end)
+
+
+def _events(tables: Any, system: System) -> tuple[events.Event, ...]:
+    """Return the events that are looked for."""
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise InputError(f"events: expected tables [[events]], got {brief(tables)}")
+    return events.checked([_event(table, f"events[{i}]") for i, table in enumerate(tables)], system)
+
+
+def _event(table: dict[str, Any], where: str) -> events.Event:
+    """Return an event; its accuracy is a time."""
+    kind = events.KINDS[choice(table, events.KINDS, where)]
+    times: dict[str, Any] = {
+        key: time(table[key], f"{where}.{key}") for key in ("accuracy", "interval") if key in table
+    }
+    others = {key: value for key, value in table.items() if key not in ("type", *times)}
+    return call(kind, times, others, where)  # type: ignore[no-any-return]
 
 
 def _state(table: dict[str, Any], system: System) -> State:

@@ -1,22 +1,26 @@
 """A run by SciPy's solvers on the continuous equations, watched at every step they take and at every row."""
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
 from scipy import integrate
 
 from binaryast import equations
-from binaryast.arcs import first_touch
+from binaryast.arcs import Arc, ArcLookout
 from binaryast.errors import InputError
+from binaryast.events import Event
 from binaryast.integrators import RungeKutta
+from binaryast.kernels import loop
 from binaryast.outcome import (
     Outcome,
     Watch,
     contact_message,
+    event_message,
     interruption_message,
     not_finite_message,
+    occurrences,
     overlap,
 )
 from binaryast.progress import keyboard
@@ -24,6 +28,7 @@ from binaryast.schedule import Leg, Segment, row_times, schedule
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.units import Floats, quantity
+from binaryast.watchlist import Places, Watchlist
 from binaryast.working import Motion
 from binaryast.working.base import coinciding, nothing_given
 from binaryast.working.bodies import WorkingBodies
@@ -34,7 +39,9 @@ NEVER_REJECT = 1e200  # a tolerance for fixed steps
 class SolvedRun:
     """One run under way."""
 
-    def __init__(self, system: System, state: State, integrator: RungeKutta, leg: Leg) -> None:
+    def __init__(
+        self, system: System, state: State, integrator: RungeKutta, leg: Leg, events: Sequence[Event] = ()
+    ) -> None:
         self.system, self.integrator, self.begin, self.end = system, integrator, leg.begin, leg.length
         inertial = integrator.is_inertial(system)
         self.equations = equations.continuous(system, frame="inertial" if inertial else "relative")
@@ -51,8 +58,11 @@ class SolvedRun:
         self.ended, self.message = "completed", ""
         self.pressed: list[int] = []
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
-        if touching := coinciding(system, state.si.position) or self._touching(self.y, self.y):
-            raise overlap(system, touching - 1, state.si.position)
+        self.lookout = ArcLookout(Watchlist(events, system, state), self.working.surfaces, leg.begin, self._put)
+        if coincide := coinciding(system, state.si.position):
+            raise overlap(system, coincide - 1, state.si.position)
+        if (pair := self.lookout.overlapping(self.y)) is not None:
+            raise overlap(system, pair, state.si.position)
         start = self.equations.invariants(self.y)
         self.equations.rhs(0.0, self.y)  # compiles, where it must, before any bar is shown
         self.watch.begin(start.measures, start.potential_energy)
@@ -105,9 +115,8 @@ class SolvedRun:
             if solver.status == "failed":
                 raise InputError(f"SciPy's solver gave up: {message}")
             between = solver.dense_output()
-            end, y, touched = first_touch(
-                self.elapsed, float(solver.t), self.y, solver.y.copy(), between, self._touching
-            )
+            walked = self.lookout.walk(Arc(self.elapsed, float(solver.t), self.y, solver.y.copy(), between))
+            end, y = walked.end, walked.variables
             while len(self.rows) < len(self.times) and self.times[len(self.rows)] < end:
                 due = self.times[len(self.rows)]
                 row = between(due)
@@ -122,8 +131,11 @@ class SolvedRun:
         self.steps += 1
         if len(self.rows) < len(self.times) and self.times[len(self.rows)] == end:
             self.rows.append(y)
-        if touched:
-            self.ended, self.message = "contact", contact_message(self.system, touched - 1, self.begin + end)
+        if walked.pair is not None:
+            self.ended, self.message = "contact", contact_message(self.system, walked.pair, self.begin + end)
+        if walked.event is not None:
+            self.ended = walked.event.status
+            self.message = event_message(walked.event, self.system, self.begin + end)
 
     def _look(self, when: float, y: Floats) -> None:
         """Take in what is measured; raise where it is not a number, or an attitude no rotation at all."""
@@ -135,26 +147,23 @@ class SolvedRun:
         if self.watch.look(now.measures):
             self.closest_time = when
 
-    def _touching(self, before: Floats, after: Floats) -> int:
-        """Return which pair touches on the straight way, counted from 1, or 0."""
-        now = self.equations.snapshot(after)
-        return self.working.pair_touching(self.equations.snapshot(before).x, now.x, now.R)
+    def _put(self, y: Floats, places: Places) -> None:
+        """Put where the bodies are."""
+        now = self.equations.snapshot(y)
+        for array, values in zip(places, (now.x, now.v, now.R, now.Omega), strict=True):
+            array[:] = values
 
     def outcome(self) -> Outcome:
         """Return what has been computed."""
         times = self.times[: len(self.rows)].copy()
-        found = [self.equations.snapshot(row) for row in self.rows]
-        motion = Motion(
-            position=self.working.moving_origin(times) + np.array([one.x for one in found]),
-            velocity=self.working.origin[1] + np.array([one.v for one in found]),
-            attitude=np.array([one.R for one in found]),
-            spin=np.array([one.Omega for one in found]),
-            potential_energy=np.array([self.equations.invariants(row).potential_energy for row in self.rows]),
-            **nothing_given(len(times)),
-        )
+        if self.lookout.closest < self.watch.array[loop.CLOSEST]:
+            self.watch.array[loop.CLOSEST], self.closest_time = self.lookout.closest, self.lookout.closest_time
+        happened = self.lookout.happened
+        then = np.array([one.time - self.begin for one in happened])
         return Outcome(
             time=self.begin + times,
-            motion=motion,
+            motion=self._motion(self.rows, times),
+            occurrences=occurrences(happened, self._motion([one.variables for one in happened], then)),
             watch=self.watch,
             closest_time=self.begin + self.closest_time,
             status=self.ended,
@@ -163,6 +172,19 @@ class SolvedRun:
             step=self.segments[0].step if self.segments else self.elapsed / max(self.steps, 1),
             wall_time=self.wall_time,
             pressed=bool(self.pressed),
+        )
+
+    def _motion(self, rows: list[Floats], times: Floats) -> Motion:
+        """Return the inertial motion of all bodies at times."""
+        n = len(self.system.bodies)
+        found = [self.equations.snapshot(row) for row in rows]
+        return Motion(
+            position=self.working.moving_origin(times) + np.array([one.x for one in found]).reshape(-1, n, 3),
+            velocity=self.working.origin[1] + np.array([one.v for one in found]).reshape(-1, n, 3),
+            attitude=np.array([one.R for one in found]).reshape(-1, n, 3, 3),
+            spin=np.array([one.Omega for one in found]).reshape(-1, n, 3),
+            potential_energy=np.array([self.equations.invariants(row).potential_energy for row in rows]),
+            **nothing_given(len(rows)),
         )
 
 

@@ -1,28 +1,44 @@
 """A run by compiled steps: equal steps in segments, the loop called in chunks, and how it ended."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import inf, pi
+from typing import Any
 
 import numpy as np
 from astropy.time import TimeDelta
 
 from binaryast import working
+from binaryast.arcs import first_contact
 from binaryast.errors import StepError
+from binaryast.events import Event
 from binaryast.integrators import Stepping
 from binaryast.kernels import loop, status
-from binaryast.outcome import Outcome, Watch, contact_message, interruption_message, not_finite_message, overlap
+from binaryast.kernels.clearance import least_clearance
+from binaryast.lookout import Found, Looker, Lookout
+from binaryast.occurrences import OccurrenceFloats
+from binaryast.outcome import (
+    Happening,
+    Outcome,
+    Watch,
+    contact_message,
+    event_message,
+    interruption_message,
+    not_finite_message,
+    occurrences,
+    overlap,
+)
 from binaryast.perturbations.base import Span
 from binaryast.progress import keyboard
 from binaryast.schedule import SLACK, Segment
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.units import Floats, brief
+from binaryast.watchlist import Watchlist
 from binaryast.working.base import coinciding
 
 CHUNK_SECONDS = 0.1  # between two looks at the keyboard
 GROWTH, MOST_AT_ONCE = 8, 500_000  # of steps between two looks, whatever the clock says
-PARTS, LEVELS = 16, 3  # of a step in which bodies seem to touch: 16 parts, of which one in 16, and so on
 
 
 def turn_error(name: str, spin: float, integrator: Stepping, step: float) -> StepError:
@@ -43,7 +59,13 @@ class SteppedRun:
     """One run under way."""
 
     def __init__(
-        self, system: System, state: State, integrator: Stepping, segments: list[Segment], begin: float = 0.0
+        self,
+        system: System,
+        state: State,
+        integrator: Stepping,
+        segments: list[Segment],
+        begin: float = 0.0,
+        events: Sequence[Event] = (),
     ) -> None:
         self.system, self.integrator, self.segments, self.begin = system, integrator, segments, begin
         inertial = integrator.is_inertial(system)
@@ -54,12 +76,18 @@ class SteppedRun:
         epoch = None if state.epoch is None else state.epoch - TimeDelta(begin, format="sec")
         span = Span(begin, begin + self.end, epoch, state.frame)
         self.working = working.of(system, state, inertial=inertial, span=span if disturbed else None)
+        self.watchlist = Watchlist(events, system, state)
+        self.looker = Looker(self.working, integrator)
+        self.lookout = Lookout(self.watchlist, self.looker, begin) if self.watchlist else None
+        self.surfaces = self.working.surfaces if self.watchlist.by_steps else np.zeros_like(self.working.surfaces)
+        self.happened: list[Happening] = []
+        self.stopped: Event | None = None
         self.watch = Watch()
         self.rows: list[Floats] = [self._row()]
         self.times: list[Floats] = [np.zeros(1)]
         self.code = status.COMPLETED
         self.pressed: list[int] = []
-        self.raised, self.gone = "", 0.0  # gone: how far into the last step bodies touch [s]
+        self.raised, self.gone = "", 0.0  # gone: how far into the last step the run ends [s]
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
         self._begin()
 
@@ -71,9 +99,10 @@ class SteppedRun:
         w = self.working
         measures = w.measure(w.state, w.constants)
         position = w.from_rows(self.rows[0], self.times[0]).position[0]
-        touching = coinciding(self.system, position) or w.touching(w.state, w.surfaces, w.state)
-        if touching:
+        if touching := coinciding(self.system, position):
             raise overlap(self.system, touching - 1, position)
+        if self.surfaces.any() and self._clearance(w.state, 0.0) < 0.0:
+            raise overlap(self.system, self._nearest_pair(), position)
         self.watch.begin(measures, float(w.state[w.potential_at]))
 
     def go(self, show: Callable[[float], None]) -> None:
@@ -98,9 +127,11 @@ class SteppedRun:
         self.rows.append(rows)
         watch = self.watch.array
         energy_error = float(watch[loop.ENERGY_ERROR])
+        watch[loop.STEPS] = 0
+        if self.lookout is not None:
+            self.lookout.start(segment, self.elapsed, watch)
         if self.integrator.changed is not None:
             self._change(self.integrator.changed.shares, segment.step)
-        watch[loop.STEPS] = 0
         chunk = 16
         while (left := segment.steps - int(watch[loop.STEPS])) and self.code == status.COMPLETED and not self.pressed:
             began = time.perf_counter()
@@ -108,6 +139,8 @@ class SteppedRun:
             self.code = self._advance(segment, count, rows)
             if self.code >= status.CONTACT:
                 self._look_closer(segment, rows)
+            if status.STOPPED < self.code < status.COMPLETED:
+                self._look_back(-self.code, segment)
             spent = time.perf_counter() - began
             self.wall_time += spent
             chunk = max(1, min(GROWTH * count, MOST_AT_ONCE, int(count * CHUNK_SECONDS / max(spent, 1e-6))))
@@ -138,73 +171,132 @@ class SteppedRun:
         w.state[:] = end
         self._change(shares, segment.step)
 
+    def _clearance(self, origin: Floats, after: float) -> float:
+        """Return the smallest clearance of all pairs a time after a state."""
+        self.looker.look(origin, after)
+        return float(least_clearance(*self.looker.places[::2], self.surfaces)[0])
+
+    def _nearest_pair(self) -> int:
+        """Return which pair has the smallest clearance where it was last looked at."""
+        return int(least_clearance(*self.looker.places[::2], self.surfaces)[1])
+
     def _look_closer(self, segment: Segment, rows: Floats) -> None:
-        """Repeat a step in which bodies seem to touch in short parts: the chord of its arc may, where the arc does not.
+        """Look closer at a step in which bodies may touch: where they do, the run ends there; else the step is taken.
 
-        Where they do, the run ends with the part in which they touch; else the step is taken after all.
+        What happens in the step before is no less an event.
         """
-        w, watch = self.working, self.watch.array.copy()
-        start = w.state.copy()
-        gone = self._by_parts(segment.step, LEVELS, watch)
+        origin = self._motion_itself(segment.step)
+        gone = first_contact(lambda after: self._clearance(origin, after), 0.0, segment.step)
         if gone is None:
-            w.state[:] = start
-            self.code = self._call(segment.step, 1, segment.stride, rows, self.watch.array, np.zeros_like(w.surfaces))
-        else:
-            self.gone = gone
-            separation = float(w.measure(w.state, w.constants)[-1])
-            if separation < self.watch.array[loop.CLOSEST]:
-                self.closest_time = self.elapsed + self.watch.array[loop.STEPS] * segment.step + gone
-                self.watch.array[[loop.CLOSEST, loop.CLOSEST_STEP]] = separation, 0
-            self.watch.array[loop.ENERGY_ERROR : loop.CLOSEST] = watch[loop.ENERGY_ERROR : loop.CLOSEST]
+            free = np.zeros_like(self.surfaces)
+            self.code = self._call(segment.step, 1, segment.stride, rows, self.watch.array, free)
+            return
+        for found in [] if self.lookout is None or not gone else self.lookout.within(gone):
+            if self._takes_in(found):
+                self._stop_at(found.state, found.root.time - self._now(segment), segment)
+                return
+        self.looker.look(origin, gone)
+        pair = self._nearest_pair()
+        event = self.watchlist.contact_of(pair)
+        self.happened.append(Happening(event, self._now(segment) + gone, -1, self.looker.scratch.copy()))
+        self._stop_at(self.looker.scratch.copy(), gone, segment)
+        self.code = status.CONTACT + pair
 
-    def _by_parts(self, step: float, levels: int, watch: Floats) -> float | None:
-        """Follow a step in parts; return after what time bodies touch or it goes wrong, None where they do not."""
-        w, part, no_rows = self.working, step / PARTS, np.empty((0, self.working.row_size))
-        watch[loop.STEPS] = -2.0 * PARTS  # never a multiple of a stride that long
-        for k in range(PARTS):
-            self.code = self._call(part, 1, 10**9, no_rows, watch, w.surfaces)
-            if self.code < status.CONTACT and self.code != status.COMPLETED:
-                return k * part
-            if self.code >= status.CONTACT and levels == 1:
-                self._call(part, 1, 10**9, no_rows, watch, np.zeros_like(w.surfaces))
-                return (k + 1) * part
-            if self.code >= status.CONTACT:
-                gone = self._by_parts(part, levels - 1, watch)
-                if gone is not None:
-                    return k * part + gone
-        return None
+    def _motion_itself(self, step: float) -> Floats:
+        """Return the state in which the run is, changed back where its variables are others."""
+        w, state = self.working, self.working.state.copy()
+        if self.integrator.changed is not None:
+            self._change(-self.integrator.changed.shares[::-1], step)
+            state, w.state[:] = w.state.copy(), state
+        return state
+
+    def _now(self, segment: Segment) -> float:
+        """Return the time after the steps done, since the start of the run."""
+        return self.begin + self.elapsed + float(self.watch.array[loop.STEPS]) * segment.step
+
+    def _look_back(self, count: int, segment: Segment) -> None:
+        """Find what happened in the last two steps, of which there are so many findings; the run may end by it."""
+        lookout, watch = self.lookout, self.watch.array
+        assert lookout is not None
+        steps = int(watch[loop.STEPS])
+        self.code = status.COMPLETED
+        for found in lookout.resolve(count, steps):
+            if self._takes_in(found):
+                watch[:] = lookout.watch_before(found.root.time, steps)
+                self._stop_at(found.state, found.root.time - self._now(segment), segment)
+                return
+
+    def _takes_in(self, found: Found) -> bool:
+        """Keep what happened; whether it ends the run."""
+        event = self.watchlist.event(found.function)
+        owner = self.watchlist.owners[found.function]
+        self.happened.append(Happening(owner, found.root.time, found.root.direction, found.state))
+        self.stopped = event if event.terminal else None
+        return event.terminal
+
+    def _stop_at(self, state: Floats, gone: float, segment: Segment) -> None:
+        """End the run at a state, in the middle of a step."""
+        w = self.working
+        self.code, self.gone = status.STOPPED, gone
+        w.state[:] = state
+        measures = w.measure(w.state, w.constants)
+        if self.watch.look(measures):
+            self.closest_time, self.watch.array[loop.CLOSEST_STEP] = self._now(segment) - self.begin + gone, 0
+        if self.integrator.changed is not None:
+            self._change(self.integrator.changed.shares, segment.step)
+
+    def follow_again(self, row: Floats, segment: Segment, steps: int) -> Floats:
+        """Return the motion itself so many steps of a segment after a saved row; the run's state is left there."""
+        w = self.working
+        w.state[:] = 0
+        w.state[: w.row_size] = row
+        w.exert()
+        if self.integrator.changed is not None and steps:
+            self._change(self.integrator.changed.shares, segment.step)
+        no_rows, watch = np.empty((0, w.row_size)), np.zeros_like(self.watch.array)
+        arguments = self._arguments(np.zeros_like(self.surfaces), watch, segment.step)
+        w.advance(*arguments, steps, 2 * steps + 1, no_rows)
+        if self.integrator.changed is not None and steps:
+            self._change(-self.integrator.changed.shares[::-1], segment.step)
+        return w.state.copy()
 
     def _advance(self, segment: Segment, count: int, rows: Floats) -> int:
         """Call the compiled loop for some steps of a segment."""
-        return self._call(segment.step, count, segment.stride, rows, self.watch.array, self.working.surfaces)
+        return self._call(segment.step, count, segment.stride, rows, self.watch.array, self.surfaces)
 
     def _call(self, step: float, count: int, stride: int, rows: Floats, watch: Floats, surfaces: Floats) -> int:
         """Call the compiled loop; a potential of the user's that raises ends the run like any other trouble."""
-        w = self.working
+        w, arguments = self.working, self._arguments(surfaces, watch, step)
         try:
-            code: int = w.advance(
-                self.kernel,
-                w.measure,
-                w.touching,
-                self.shares,
-                w.attraction,
-                w.parameters,
-                w.external,
-                w.constants,
-                surfaces,
-                w.state,
-                w.before,
-                watch,
-                step,
-                count,
-                stride,
-                rows,
-            )
-        except Exception as error:  # whatever the user's function raises, in the middle of a step
-            w.state[: w.before.size] = w.before
-            self.raised = f"a potential or a force raised {type(error).__name__}: {brief(error)}"
+            if self.lookout is not None:
+                return self.lookout.advance(arguments, count, stride, rows)
+            code: int = w.advance(*arguments, count, stride, rows)
+        except Exception as error:  # whatever the user's function raises, in the middle of a step or after it
+            self.raised = "" if self.lookout is None else self.lookout.complaint()
+            if not self.raised:
+                w.state[: w.before.size] = w.before
+                self.raised = f"a potential or a force raised {type(error).__name__}: {brief(error)}"
             return status.NOT_FINITE
         return code
+
+    def _arguments(self, surfaces: Floats, watch: Floats, step: float) -> tuple[Any, ...]:
+        """Return what the compiled loop is given first."""
+        w = self.working
+        return (
+            self.kernel,
+            w.measure,
+            w.touching,
+            self.shares,
+            w.attraction,
+            w.parameters,
+            w.external,
+            w.constants,
+            surfaces,
+            w.state,
+            w.before,
+            watch,
+            step,
+        )
 
     def _keep(self, segment: Segment) -> None:
         """Close a segment: its saved rows with their times, and the last state where that is not one of them."""
@@ -236,14 +328,23 @@ class SteppedRun:
             steps=self.steps,
             step=self.segments[0].step if self.segments else 0.0,
             wall_time=self.wall_time,
+            occurrences=self._occurrences(),
             pressed=bool(self.pressed),
         )
+
+    def _occurrences(self) -> OccurrenceFloats:
+        """Return what has happened."""
+        rows = np.array([one.variables[: self.working.row_size] for one in self.happened])
+        times = np.array([one.time - self.begin for one in self.happened])
+        return occurrences(self.happened, self.working.from_rows(rows.reshape(-1, self.working.row_size), times))
 
     def _end(self) -> tuple[str, str]:
         """Return the status and what there is to say about it."""
         now = self.begin + self.elapsed
         if self.pressed and self.elapsed < self.end * (1 - SLACK):
             return "interrupted", interruption_message(now)
+        if self.code == status.STOPPED and self.stopped is not None:
+            return self.stopped.status, event_message(self.stopped, self.system, now)
         if self.code >= status.CONTACT:
             return "contact", contact_message(self.system, self.code - status.CONTACT, now)
         if self.code == status.NOT_FINITE:

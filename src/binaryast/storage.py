@@ -26,6 +26,7 @@ from binaryast import (
     bodies,
     coefficients,
     elements,
+    events,
     gravity,
     impulses,
     integrators,
@@ -46,7 +47,7 @@ FORMAT = "binaryast trajectory"
 FORMAT_VERSION = 1
 SEAL_SIZE = 512  # bytes: the smallest block that HDF5 leaves free at the start of a file
 MODULES = (  # whose classes a file can bring back
-    *(adaptive, bodies, coefficients, elements, gravity, impulses, integrators, layered, perturbations),
+    *(adaptive, bodies, coefficients, elements, events, gravity, impulses, integrators, layered, perturbations),
     *(polyhedron, polyhedron_pair, polyhedron_point, shapes, system, unions),
 )
 CLASSES: dict[str, type[Value]] = {

@@ -22,6 +22,7 @@ def summary(run: Any) -> str:
         *_distances(run),
         *(f"  {line}" for line in kicks(run)),
         *(f"  {line}" for line in from_outside(run)),
+        *(f"  {line}" for line in happenings(run)),
         f"  largest errors: energy {run.max_relative_energy_error:.4e} of |E0| "
         f"({run.max_energy_error_over_potential:.2e} of |U0|), "
         f"momentum angular {run.max_relative_angular_momentum_error:.1e}, "
@@ -56,6 +57,20 @@ def from_outside(run: Any) -> list[str]:
         return []
     names = ", ".join(dict.fromkeys(type(one).__name__ for one in run.system.perturbations))
     return [f"from outside: {names}; work {run.si.work[-1] - run.si.work[0]:.4g} J"]
+
+
+def happenings(run: Any) -> list[str]:
+    """Return a line for each event that was looked for: how often it happened, and when first and last."""
+    lines = []
+    for i, event in enumerate(run.watched):
+        times = run.occurrences.time[run.occurrences.event == i]
+        often = {0: "never", 1: "once"}.get(len(times), f"{len(times)} times")
+        when = f", after {span(times[0])}" if len(times) else ""
+        last = f", last after {span(times[-1])}" if len(times) > 1 else ""
+        lines.append(
+            f"{event.title(run.system)}: {often}{when.replace('after', 'first after') if last else when}{last}"
+        )
+    return lines
 
 
 def _distances(run: Any) -> list[str]:

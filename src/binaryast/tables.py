@@ -19,12 +19,15 @@ PLAIN = (  # arguments that have no unit
     *("body", "beta"),
     *("raised_by", "love_number", "quality_factor", "coefficient", "normal", "specular", "diffuse"),
     *("first_term_only", "ecliptic", "orbit", "sun"),
+    *("bodies", "origin", "axes", "normal", "quantity", "direction", "terminal"),
     *("eccentricity", "about", "R", "R2", "attitude", "epoch", "frame"),
 )
 EXAMPLES = {  # what a text with a unit looks like
     "time": "1 d",
     "delta_v": "[0, -2.6, 0] mm / s",
     "point": "[10, 55, 0] m",
+    "value": "5 deg",
+    "distance": "2 km",
     "mass": "2e9 kg",
     "density": "2000 kg / m3",
     "offset": "[60, 0, 0] m",
@@ -41,7 +44,6 @@ EXAMPLES = {  # what a text with a unit looks like
     "mean_anomaly": "10 deg",
     "period": "12 h",
     "gm": "398600 km3 / s2",
-    "distance": "20000 km",
     "speed": "8 km / s",
     "time_lag": "10 s",
     "radius": "400 m",
@@ -101,9 +103,7 @@ def epoch(value: Any, where: str = "state.epoch") -> Time:
     try:
         return Time("T".join(words), scale=scale)
     except Exception:  # astropy has several, none of them short
-        raise InputError(
-            f'{where}: {brief(value)!r} is no date: expected such as "2022-09-26T23:14:24 UTC"'
-        ) from None
+        raise InputError(f'{where}: {brief(value)!r} is no date: expected such as "2022-09-26T23:14:24 UTC"') from None
 
 
 def table_of(tables: dict[str, Any], key: str, where: str = "") -> dict[str, Any]:

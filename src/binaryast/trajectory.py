@@ -6,21 +6,23 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex, overload
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, SupportsIndex, overload
 
 import numpy as np
 from astropy.time import Time, TimeDelta
 from astropy.units import Quantity
 from scipy.spatial.transform import Rotation
 
-from binaryast import storage, summaries
-from binaryast.errors import CheckError, InputError, StepWarning
+from binaryast import dense, storage, summaries
+from binaryast.errors import CheckError, InputError, InterpolationWarning, StepWarning
+from binaryast.events import Event
 from binaryast.impulses import AnyImpulse
 from binaryast.integrators import Integrator
+from binaryast.occurrences import Occurrence, OccurrenceFloats
 from binaryast.rotations import ROTATION_TOLERANCE
 from binaryast.state import RelativeState, State
 from binaryast.system import System
-from binaryast.units import Floats, brief, checked, numbers, quantity
+from binaryast.units import Floats, as_quantity, brief, checked, numbers, quantity, span, to_si
 from binaryast.values import Value
 from binaryast.working.base import nothing_given
 
@@ -55,6 +57,8 @@ FIGURES = {  # of the whole run, over every step; with their units
     "accuracy": "",  # None where an integrator was given
     "estimated_error": "",
 }
+DOUBTFUL_INTERPOLATION = 1e-6
+OCCURRENCE_UNITS = dict(zip(OccurrenceFloats._fields, ("", "s", "", "m", "m / s", "", "rad / s"), strict=True))
 SOMETIMES = ("max_next_degree_term", "accuracy", "estimated_error")  # None of some runs, and in older files
 
 
@@ -85,7 +89,7 @@ class Trajectory(Value):
     rotation_error : ndarray
         Frobenius norm ||I - R^T R||, the largest of all attitudes (N,).
     status : str
-        ``completed``, ``contact``, ``interrupted`` or ``failed``; ``message`` says more.
+        ``completed``, ``contact``, ``escape``, ``event``, ``interrupted`` or ``failed``; ``message`` says more.
     steps, step, wall_time : int, Quantity, Quantity
         Steps taken; the step used, the largest one up to the integrator's that divides ``save_every``, or the run where
         none is given (a last stretch that ``save_every`` leaves has its own, smaller one; of an adaptive integrator,
@@ -97,7 +101,8 @@ class Trajectory(Value):
         Over every step. Linear momentum is relative to sum m |v|; in the relative frame it is kept by construction,
         and its figure is the round-off of the saved rows.
     closest_approach, closest_approach_time : Quantity
-        Smallest distance of any two mass centres over every step, and when.
+        Smallest distance of any two mass centres, also within steps (unless rows are more than 20 000 steps apart), and
+        when.
     max_next_degree_term : float or None
         Largest size, at saved rows, of the next two degrees of U that the gravity of a pair leaves out, over G m1 m2/r.
         It is an estimate of what its cut costs; torques lose more, by (r/size)^2. None of gravity without a cut.
@@ -111,6 +116,10 @@ class Trajectory(Value):
         accuracy is that of each leg; ``integrator`` is that of the last.
     legs : tuple of Trajectory
         The rows between impulses; the run itself where there are none.
+    watched : tuple of Event
+        What was looked for, and the contact that ended the run.
+    events : tuple of Occurrence
+        What happened, in order of time, with the states there; ``occurrences`` are its arrays.
     integrator, system, epoch, frame, provenance
         What was run, and on what.
     si : TrajectoryFloats
@@ -141,6 +150,8 @@ class Trajectory(Value):
     estimated_error: float | None = None
     choice: str = ""
     impulses: tuple[AnyImpulse, ...] = ()
+    watched: tuple[Event, ...] = ()
+    occurrences: OccurrenceFloats | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
         for array in self.si:
@@ -178,11 +189,7 @@ class Trajectory(Value):
     @cached_property
     def _rotations(self) -> Floats:
         """The attitudes, or the rotations nearest to them where they are none (N, n, 3, 3)."""
-        r = self.si.attitude
-        if not np.any(_rotation_errors(r) > ROTATION_TOLERANCE):
-            return r
-        matrices = r.reshape(-1, 3, 3).copy()  # SciPy below 1.15 takes no read-only array
-        return np.asarray(Rotation.from_matrix(matrices).as_matrix().reshape(r.shape))
+        return nearest_rotations(self.si.attitude)
 
     def _rows(self, index: slice) -> "Trajectory":
         """Return some of the rows; the figures remain those of the whole run."""
@@ -197,6 +204,155 @@ class Trajectory(Value):
         """The rows between impulses, where the same time comes twice; their figures remain those of the whole run."""
         begins = [0, *(np.flatnonzero(np.diff(self.si.time) == 0) + 1).tolist(), len(self)]
         return tuple(self._rows(slice(begin, end)) for begin, end in pairwise(begins))
+
+    def at(self, time: Quantity, *, side: Literal["before", "after"] = "after") -> "State | Trajectory":
+        """Return where everything is between the saved rows, by interpolation.
+
+        Through the four rows about a moment goes a polynomial of degree 7 in positions, and one in the rotation vectors
+        that lead from a uniform turn to the attitudes, so that these remain rotations (``dense.py``). The error falls
+        with the eighth power of the distance of the rows, that of velocities and spins with the seventh; at a row it is
+        none. `interpolation_error` says how large it is. Where that is not enough, save more often, or ask
+        `binaryast.retrace`, which follows the motion again from the row before.
+
+        Parameters
+        ----------
+        time : Quantity
+            Since the start: one time, or an array (M,) of them that grow.
+        side : {"after", "before"}
+            Of an impulse at this very time.
+
+        Returns
+        -------
+        State or Trajectory
+            A state of one time; of several a trajectory, whose figures remain those of the whole run. Its potential
+            energy is what the total energy, which is interpolated, leaves.
+
+        Raises
+        ------
+        InputError
+            For a time outside of the run, times that do not grow, or a run of one row.
+
+        Warns
+        -----
+        InterpolationWarning
+            Where the estimated error is above 1e-6, of the distance from the primary, or in rad.
+
+        Examples
+        --------
+        >>> import astropy.units as u
+        >>> import binaryast as ba
+        >>> system, state = ba.catalogue.load("didymos")
+        >>> run = ba.propagate(system, state, duration=1 * u.day, integrator=ba.LGVI(step=40 * u.s))
+        >>> run.at(12345.6 * u.s).separation.round(3)
+        <Quantity 1184.266 m>
+        >>> len(run.at([1, 2, 3] * u.h))
+        3
+        """
+        times, single = self.checked_times(time, side)
+        rows = self._between(times, side)
+        error = self._error_at(times)
+        if error > DOUBTFUL_INTERPOLATION:
+            warnings.warn(
+                f"run.at: rows are too far apart for more than an accuracy of {error:.1g} there, as estimated: "
+                "save more often, or take ba.retrace(run, time)",
+                InterpolationWarning,
+                stacklevel=2,
+            )
+        result = replace(self, si=rows)
+        return result[0] if single else result
+
+    def checked_times(self, time: Quantity, side: str) -> tuple[Floats, bool]:
+        """Return times within the run [s], and whether it is a single one; round-off may put them outside.
+
+        Raises
+        ------
+        InputError
+            As for `at`.
+        """
+        if side not in ("before", "after"):
+            raise InputError(f"side: expected 'before' or 'after' an impulse, got {brief(repr(side))}")
+        shape = as_quantity(time, "s", "time").shape
+        times = np.atleast_1d(to_si(time, "s", "time", shape=shape if len(shape) == 1 else ()))
+        first, last = self.si.time[[0, -1]]
+        if len(times) == 0 or np.any(np.diff(times) <= 0):
+            raise InputError(f"time: expected times that grow, got {brief(times)} s")
+        if len(self) < 2 and np.any(times != first):
+            raise InputError("time: the run has one row only: expected at least 2")
+        within = np.clip(times, first, last)
+        for wrong in times[np.abs(times - within) > 1e-14 * last]:
+            raise InputError(
+                f"time: {span(wrong)} is outside of the run, whose rows are from {span(first)} to {span(last)}"
+            )
+        return np.asarray(within), not shape
+
+    def _between(self, times: Floats, side: str) -> TrajectoryFloats:
+        """Return rows at times, each interpolated in the leg in which it lies."""
+        legs = self.legs
+        begins = np.array([leg.si.time[0] for leg in legs[1:]])
+        of_leg = np.searchsorted(begins, times, side="right" if side == "after" else "left")
+        parts = []
+        for k, leg in enumerate(legs):
+            chosen = times[of_leg == k]
+            if len(chosen):
+                parts.append(leg._interpolated(chosen) if len(leg) > 1 else leg.si)
+        return TrajectoryFloats(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+
+    def _interpolated(self, times: Floats) -> TrajectoryFloats:
+        """Return rows at times within this leg."""
+        found = dense.between(self._dense_rows, times)
+        given = [
+            _linear(times, self.si.time, array) for array in (self.si.work, self.si.impulse, self.si.angular_impulse)
+        ]
+        result = replace(self, si=TrajectoryFloats(*found, np.zeros(len(times)), *given))
+        energy = np.interp(times, self.si.time, self.energy.value)
+        known = np.isin(times, self.si.time)
+        potential = energy - result.energy.value
+        potential[known] = self.si.potential_energy[np.searchsorted(self.si.time, times[known])]
+        return TrajectoryFloats(*found, potential, *given)
+
+    @property
+    def _dense_rows(self) -> dense.Rows:
+        position, velocity, _, spin = self.si[1:5]
+        return dense.Rows(self.si.time, position, velocity, self._rotations, spin)
+
+    @cached_property
+    def interpolation_error(self) -> Floats:
+        """The estimated error of `at` in each interval between rows (N - 1,).
+
+        It is that of positions, relative to the distance from the primary, and of attitudes [rad], the largest of all
+        bodies; infinite where there are too few rows to tell, zero between the rows before and after an impulse.
+        """
+        parts: list[Floats] = []
+        for leg in self.legs:
+            parts += [dense.errors(leg._dense_rows), np.zeros(1)]
+        return np.concatenate(parts[:-1])
+
+    def _error_at(self, times: Floats) -> float:
+        """Return the largest estimated error at times; none at rows."""
+        times = times[~np.isin(times, self.si.time)]
+        intervals = np.searchsorted(self.si.time, times, side="right") - 1
+        return float(self.interpolation_error[intervals].max(initial=0.0))
+
+    @cached_property
+    def events(self) -> tuple[Occurrence, ...]:
+        """What happened, in order of time."""
+        if self.occurrences is None:
+            return ()
+        return tuple(self._occurrence(*one) for one in zip(*self.occurrences, strict=True))
+
+    def _occurrence(self, event: Any, time: Any, direction: Any, *motion: Any) -> Occurrence:
+        """Return one of them, with units."""
+        position, velocity, attitude, spin = motion
+        when = quantity(float(time), "s")
+        state = State(
+            quantity(position, "m"),
+            quantity(velocity, "m / s"),
+            nearest_rotations(attitude),
+            quantity(spin, "rad / s"),
+            None if self.epoch is None else self.epoch + TimeDelta(when),
+            self.frame,
+        )
+        return Occurrence(self.watched[int(event)], when, int(direction), state)
 
     @property
     def time(self) -> Quantity:
@@ -447,6 +603,12 @@ class Trajectory(Value):
         attributes |= {name: getattr(figure, "value", figure) for name, figure in figures.items() if figure is not None}
         values = {"system": self.system, "integrator": self.integrator, "epoch": self.epoch}
         values |= {"impulses": self.impulses} if self.impulses else {}
+        if self.watched and self.occurrences is not None:
+            values["watched"] = self.watched
+            datasets |= {
+                f"events_{name}": quantity(array, unit) if unit else array
+                for (name, unit), array in zip(OCCURRENCE_UNITS.items(), self.occurrences, strict=True)
+            }
         return storage.write(
             storage.as_path(path), storage.Content(datasets, attributes, values, self.provenance), force=force
         )
@@ -489,6 +651,8 @@ class Trajectory(Value):
                 provenance=content.provenance,
                 choice=str(attributes["choice"]),
                 impulses=content.values.get("impulses", ()),
+                watched=content.values.get("watched", ()),
+                occurrences=_occurrences(content.datasets, content.values),
                 **{
                     name: quantity(attributes[name], unit) if unit else attributes[name]
                     for name, unit in FIGURES.items()
@@ -498,6 +662,20 @@ class Trajectory(Value):
             raise storage.broken(path, f"{error.args[0]} is missing") from None
         except Exception as error:  # a file that was changed can hold anything
             raise storage.broken(path, brief(error)) from None
+
+
+def nearest_rotations(r: Floats) -> Floats:
+    """Return attitudes (.., 3, 3) as they are, or the rotations nearest to them where they are none."""
+    if not np.any(_rotation_errors(r) > ROTATION_TOLERANCE):
+        return r
+    matrices = r.reshape(-1, 3, 3).copy()  # SciPy below 1.15 takes no read-only array
+    return np.asarray(Rotation.from_matrix(matrices).as_matrix().reshape(r.shape))
+
+
+def _linear(times: Floats, of_rows: Floats, values: Floats) -> Floats:
+    """Return values (N, ...) of rows at times between these."""
+    columns = values.reshape(len(values), -1).T
+    return np.stack([np.interp(times, of_rows, column) for column in columns], axis=-1).reshape(-1, *values.shape[1:])
 
 
 def _rotation_errors(r: Floats) -> Floats:
@@ -522,3 +700,16 @@ def _floats(datasets: dict[str, Any], count: int) -> TrajectoryFloats:
     datasets = nothing_given(rows) | datasets  # as in the file of a run without perturbations
     arrays = {name: np.asarray(datasets[name], dtype=np.float64) for name in shapes}
     return TrajectoryFloats(*(checked(arrays[name], name, shape) for name, shape in shapes.items()))
+
+
+def _occurrences(datasets: dict[str, Any], values: dict[str, Any]) -> OccurrenceFloats:
+    """Return what happened of a file, nothing where it does not say."""
+    count = len(values["system"].bodies)
+    if "events_time" not in datasets:
+        return OccurrenceFloats.none(count)
+    number = len(datasets["events_time"])
+    vectors = (number, count, 3)
+    shapes = ((number,), (number,), (number,), vectors, vectors, (*vectors, 3), vectors)
+    arrays = {name: np.asarray(datasets[f"events_{name}"], dtype=np.float64) for name in OCCURRENCE_UNITS}
+    found = (checked(array, name, shape) for (name, array), shape in zip(arrays.items(), shapes, strict=True))
+    return OccurrenceFloats(*found)

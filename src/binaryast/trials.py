@@ -1,19 +1,21 @@
 """Short runs to be compared: how far they are apart, how errors and disturbances grow along them."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
-from math import ceil, inf, log2, pi, sqrt
+from math import ceil, inf, log2, pi
 from typing import NamedTuple
 
 import numpy as np
 
+from binaryast.dense import difference
 from binaryast.errors import AccuracyError, StepError
 from binaryast.integrators import Splitting, Stepping
 from binaryast.outcome import Outcome
+from binaryast.rates import rates
 from binaryast.schedule import SLACK, Segment
 from binaryast.state import State
 from binaryast.stepping import SteppedRun
-from binaryast.system import Pair, System
+from binaryast.system import System
 from binaryast.units import Floats, quantity, span
 from binaryast.working import Motion
 
@@ -26,29 +28,6 @@ LEAST = 5000  # of that bound, for runs of less than an orbit
 SMALL = 1e-9  # an error that does not fall any more below this is round-off
 REFERENCE = Splitting(quantity(1.0, "s"), "ss10")
 SHORT_STEPS = Splitting(quantity(1.0, "s"), "rkn6a")  # to see whether bodies touch
-
-
-def rates(system: System, state: State) -> Iterator[tuple[Pair, float]]:
-    """Yield how fast each pair goes, or would fall, round each other now [rad/s]."""
-    position, velocity, _, _ = state.si
-    for pair in system.pairs:
-        x, v = (array[pair.secondary] - array[pair.primary] for array in (position, velocity))
-        distance = float(np.linalg.norm(x))
-        if distance > 0:
-            gm = system.bodies[pair.primary].si.gm + system.bodies[pair.secondary].si.gm
-            yield pair, max(sqrt(gm / distance**3), float(np.linalg.norm(np.cross(x, v))) / distance**2)
-
-
-def errors(one: Motion, other: Motion) -> Floats:
-    """Return how far two motions are apart at their rows: the largest of all bodies.
-
-    Positions count from the primary's and relative to the distance from it, attitudes as angles [rad].
-    """
-    x, y = (motion.position[:, 1:] - motion.position[:, :1] for motion in (one, other))
-    position = np.linalg.norm(x - y, axis=-1) / np.linalg.norm(y, axis=-1)
-    chord = np.linalg.norm(one.attitude - other.attitude, axis=(-2, -1)) / sqrt(8)  # sin of half of the angle
-    angle = 2 * np.arcsin(np.minimum(chord, 1.0))
-    return np.asarray(np.maximum(position.max(axis=1), angle.max(axis=1)))
 
 
 def whole(count: float) -> int:
@@ -184,7 +163,7 @@ class Trials:
             before, segments = best, equal(time, count)
             best = self.motion(REFERENCE, segments)
             if best is not None and before is not None:
-                apart = float(errors(before, best).max())
+                apart = float(difference(before, best).max())
                 stalls = stalls + 1 if apart > last / 2 else 0
                 if apart < wanted / 30 or (stalls and last < SMALL) or stalls == 3:  # shorter steps do not help
                     return best, segments, apart
@@ -200,7 +179,7 @@ class Trials:
             motion = self.motion(integrator, segments, disturbed)
             if motion is None:
                 return None
-            apart = errors(motion, undisturbed)
+            apart = difference(motion, undisturbed)
             if apart.max() < LARGE:
                 return Sensitivity(times, apart / disturbance)
         factors = np.where(np.maximum.accumulate(apart) < LARGE, apart / disturbance, inf)  # it is lost in the end

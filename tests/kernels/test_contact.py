@@ -41,18 +41,21 @@ def test_against_minimisation() -> None:
         b = ellipsoid(random.uniform(0.3, 2, 3), turns[2 * i + 1])
         d = random.normal(size=3) * 1.5
         level = smallest_common_level(d, a, b)
-        if abs(level - 1) > 1e-4:
-            assert contact.overlap(tuple(d), symmetric(a), symmetric(b)) == (level < 1)
-            touched += level < 1
+        assert contact.largest(tuple(d), symmetric(a), symmetric(b)) == pytest.approx(level, rel=2e-5)
+        touched += level < 1
     assert 50 < touched < 150
 
 
 @pytest.mark.parametrize("gap", [1e-7, -1e-7])
 def test_tangent_ellipsoids(gap: float) -> None:
     a, b = np.diag([4.0, 1.0, 0.25]), np.diag([0.25, 9.0, 1.0])
-    assert contact.overlap((2.5 + gap, 0.0, 0.0), symmetric(a), symmetric(b)) == (gap < 0)
-    assert contact.overlap((0.0, 4.0 + gap, 0.0), symmetric(a), symmetric(b)) == (gap < 0)
+    assert contact.largest((2.5 + gap, 0.0, 0.0), symmetric(a), symmetric(b)) == pytest.approx(
+        (1 + gap / 2.5) ** 2, abs=1e-15
+    )
+    assert contact.largest((0.0, 4.0 + gap, 0.0), symmetric(a), symmetric(b)) == pytest.approx(
+        (1 + gap / 4) ** 2, abs=1e-15
+    )
 
 
 def test_one_inside_the_other_touches() -> None:
-    assert contact.overlap((0.1, 0.0, 0.0), symmetric(np.eye(3)), symmetric(0.01 * np.eye(3)))
+    assert contact.largest((0.1, 0.0, 0.0), symmetric(np.eye(3)), symmetric(0.01 * np.eye(3))) < 1

@@ -54,6 +54,13 @@ EXTERNAL_POTENTIAL = types.UniTuple(types.float64, 2)(ARRAY, types.float64, ROWS
 FORCE = types.void(ARRAY, types.float64, ROWS, ROWS, BODY_MATRICES, ROWS, ROWS, ROWS)
 # Which pair of surfaces touches, counted from 1, or 0, from (state, surfaces, state before the step).
 TOUCH = types.int64(ARRAY, ARRAY, ARRAY)
+# What an event watches, from (p, t, position, velocity, attitude, spin): parameters, the time since the start, and
+# where the bodies are about the barycentre (n, 3), (n, 3), (n, 3, 3), (n, 3); and what fills these in, from (state,
+# constants, shares of the mass, position, ..).
+PLACES = (ROWS, ROWS, BODY_MATRICES, ROWS)
+EVENT = types.float64(ARRAY, types.float64, *PLACES)
+EVENT_POINTER = types.FunctionType(EVENT)
+VIEW = types.void(ARRAY, ARRAY, ARRAY, *PLACES)
 # How a system attracts: the potential of a pair, or a table of one for each pair of several bodies.
 PAIR_POINTER = types.FunctionType(PAIR_POTENTIAL)
 PAIR_POINTERS = types.Array(types.int64, 1, "C")

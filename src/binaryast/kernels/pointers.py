@@ -1,7 +1,9 @@
-"""Tables of pointers to compiled functions: a pair potential for each pair of bodies, forces from outside.
+"""Tables of pointers to compiled functions, so that one compilation serves any number of them.
 
-One compilation serves any number of them. numba's typed list could hold them, but reading it needs reference counting,
-which the steps do without. Here the pointers lie, as they are, in an array of whole numbers.
+One holds a pair potential for each pair of bodies, others what acts from outside and what events watch. A table is also
+the quick way to hand functions over from Python, which takes a tenth of a millisecond for each of them otherwise.
+numba's typed list could hold them, but reading it needs reference counting, which the steps do without. Here the
+pointers lie, as they are, in an array of whole numbers.
 """
 
 from collections.abc import Callable, Sequence
@@ -60,7 +62,7 @@ def _put_pointer(table: Any, k: int, function: Callable[..., Any]) -> None:
 
 
 @cache
-def _putter(kind: Any) -> Callable[..., None]:
+def putter(kind: Any) -> Callable[..., None]:
     """Return what puts a compiled function of one kind at the k-th place of a table."""
     return jit(types.void(PAIR_POINTERS, types.int64, kind))(_put_pointer)
 
@@ -69,5 +71,5 @@ def table_of(functions: Sequence[Callable[..., Any]], kind: Any = PAIR_POINTER) 
     """Return the table of compiled functions; it is good as long as these are, in this process."""
     table = np.zeros(WORDS * len(functions), dtype=np.int64)
     for k, function in enumerate(functions):
-        _putter(kind)(table, k, function)
+        putter(kind)(table, k, function)
     return table

@@ -1,15 +1,28 @@
 """A run by heyoka's Taylor series, watched at every step and at every row."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from binaryast.arcs import first_touch
+from binaryast.arcs import Arc, ArcLookout
 from binaryast.errors import InputError
+from binaryast.events import Event
 from binaryast.integrators import Taylor
+from binaryast.kernels import loop
 from binaryast.kernels.bodies import layout
-from binaryast.outcome import Outcome, Watch, contact_message, interruption_message, not_finite_message, overlap
+from binaryast.kernels.bodies.looking import view
+from binaryast.occurrences import OccurrenceFloats
+from binaryast.outcome import (
+    Outcome,
+    Watch,
+    contact_message,
+    event_message,
+    interruption_message,
+    not_finite_message,
+    occurrences,
+    overlap,
+)
 from binaryast.progress import keyboard
 from binaryast.schedule import Leg, row_times
 from binaryast.state import State
@@ -17,6 +30,7 @@ from binaryast.system import System
 from binaryast.taylor import compiled
 from binaryast.taylor.motion import Formulas
 from binaryast.units import Floats
+from binaryast.watchlist import Places, Watchlist
 from binaryast.working.base import coinciding
 from binaryast.working.bodies import WorkingBodies
 
@@ -26,7 +40,9 @@ SMALLEST_STEP = 1e-15  # over the time since the start: smaller ones lead nowher
 class TaylorRun:
     """One run under way."""
 
-    def __init__(self, system: System, state: State, integrator: Taylor, leg: Leg) -> None:
+    def __init__(
+        self, system: System, state: State, integrator: Taylor, leg: Leg, events: Sequence[Event] = ()
+    ) -> None:
         self.system, self.begin, self.end = system, leg.begin, leg.length
         compiled.heyoka()  # says at once where it is missing
         self.times = row_times(leg)
@@ -36,8 +52,9 @@ class TaylorRun:
         self.pressed: list[int] = []
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
         self.rows = [self._row()]
-        self._begin(state)
         self.formulas = Formulas(system, state, self.working)
+        self.lookout = ArcLookout(Watchlist(events, system, state), self.working.surfaces, leg.begin, self._see)
+        self._begin(state)
         self.integrator = compiled.integrator(self.formulas, integrator.tolerance, compact=integrator.compact)
         self.y = self.formulas.start
 
@@ -47,8 +64,10 @@ class TaylorRun:
     def _begin(self, state: State) -> None:
         """Look at the start: overlap; and keep the references."""
         w = self.working
-        if touching := coinciding(self.system, state.si.position) or w.touching(w.state, w.surfaces, w.state):
-            raise overlap(self.system, touching - 1, state.si.position)
+        if coincide := coinciding(self.system, state.si.position):
+            raise overlap(self.system, coincide - 1, state.si.position)
+        if (pair := self.lookout.overlapping(self.formulas.start)) is not None:
+            raise overlap(self.system, pair, state.si.position)
         self.watch.begin(w.measure(w.state, w.constants), float(w.state[w.potential_at]))
 
     def go(self, show: Callable[[float], None]) -> None:
@@ -72,9 +91,8 @@ class TaylorRun:
         saved = len(self.rows)
         try:
             reached = self._advance()
-            end, y, touched = first_touch(
-                self.elapsed, reached, self.y, self.integrator.state.copy(), self._at, self._touching
-            )
+            walked = self.lookout.walk(Arc(self.elapsed, reached, self.y, self.integrator.state.copy(), self._at))
+            end, y = walked.end, walked.variables
             self._look(end, y)
             while len(self.rows) < len(self.times) and self.times[len(self.rows)] < end:
                 due = float(self.times[len(self.rows)])
@@ -89,8 +107,11 @@ class TaylorRun:
         if len(self.rows) < len(self.times) and self.times[len(self.rows)] == end:
             self._look(end, y)
             self.rows.append(self._row())
-        if touched:
-            self.ended, self.message = "contact", contact_message(self.system, touched - 1, self.begin + end)
+        if walked.pair is not None:
+            self.ended, self.message = "contact", contact_message(self.system, walked.pair, self.begin + end)
+        if walked.event is not None:
+            self.ended = walked.event.status
+            self.message = event_message(walked.event, self.system, self.begin + end)
 
     def _advance(self) -> float:
         """Have heyoka take a step, up to the end of the run; return the time that it reaches."""
@@ -123,18 +144,27 @@ class TaylorRun:
         if self.watch.look(measures):
             self.closest_time = when
 
-    def _touching(self, before: Floats, after: Floats) -> int:
-        """Return which pair touches on the straight way, counted from 1, or 0."""
+    def _see(self, y: Floats, places: Places) -> None:
+        """Put where the bodies are."""
         w = self.working
-        w.before[: layout.MOTION * w.count] = self.formulas.motion(before)
-        self._put(after)
-        touching: int = w.touching(w.state, w.surfaces, w.before)
-        return touching
+        w.before[: layout.MOTION * w.count] = self.formulas.motion(y)
+        view(w.before, w.constants, w.shares, *places)
+
+    def _occurrences(self) -> OccurrenceFloats:
+        """Return what has happened."""
+        rows = np.zeros((len(self.lookout.happened), self.working.row_size))
+        for row, one in zip(rows, self.lookout.happened, strict=True):
+            row[: layout.MOTION * self.working.count] = self.formulas.motion(one.variables)
+        times = np.array([one.time - self.begin for one in self.lookout.happened])
+        return occurrences(self.lookout.happened, self.working.from_rows(rows, times))
 
     def outcome(self) -> Outcome:
         """Return what has been computed."""
         times = self.times[: len(self.rows)].copy()
+        if self.lookout.closest < self.watch.array[loop.CLOSEST]:
+            self.watch.array[loop.CLOSEST], self.closest_time = self.lookout.closest, self.lookout.closest_time
         return Outcome(
+            occurrences=self._occurrences(),
             time=self.begin + times,
             motion=self.working.from_rows(np.array(self.rows), times),
             watch=self.watch,

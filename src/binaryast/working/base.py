@@ -95,6 +95,10 @@ class Working(ABC):
         self.external = external_of(system, self.span) if self.disturbed else nothing_external()
 
     @abstractmethod
+    def exert(self) -> None:
+        """Fill in what the motion in the state exerts."""
+
+    @abstractmethod
     def from_rows(self, rows: Floats, time: Floats) -> Motion:
         """Return the inertial motion of all bodies from saved starts of working states at times since the start."""
 

@@ -87,15 +87,6 @@ class WorkingBodies(Working):
             **self.given(rows),
         )
 
-    def pair_touching(self, before: Floats, position: Floats, attitude: Floats) -> int:
-        """Return which pair touches on the way between positions (n, 3), counted from 1, or 0; attitudes (n, 3, 3)."""
-        at = layout.attitude_of(self.count)
-        self.before[: before.size] = before.ravel()
-        self.state[: position.size] = position.ravel()
-        self.state[at : at + 4 * self.count] = Rotation.from_matrix(attitude).as_quat().ravel()
-        touching: int = self.touching(self.state, self.surfaces, self.before)
-        return touching
-
     def momentum_and_torque(self, body: int) -> tuple[Floats, Floats]:
         """Return a body's angular momentum and the torque on it, both in its own frame."""
         momentum = layout.momentum_of(self.count) + 3 * body

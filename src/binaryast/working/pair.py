@@ -56,7 +56,7 @@ class WorkingPair(Working):
             check_perturbations(system, state, self.origin, self.span)
         self.before = self.state.copy()
         if np.any(self.state[layout.POSITION : layout.POSITION + 3]):
-            self.prepare()
+            self.exert()
 
     def extend(self) -> None:
         """Make room in the state for what outside action needs, and take what watches and completes it."""
@@ -65,7 +65,7 @@ class WorkingPair(Working):
         super().extend()
         self.measure = measure
 
-    def prepare(self) -> None:
+    def exert(self) -> None:
         """Fill in what the motion in the state exerts."""
         if not self.disturbed:
             prepare(self.state, self.attraction, self.parameters)

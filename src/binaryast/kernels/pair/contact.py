@@ -1,17 +1,23 @@
-"""Whether a pair touches within a step."""
+"""Whether a pair may touch within a step."""
 
-from binaryast.kernels.arrays import matrix_at, vector_at
-from binaryast.kernels.contact import can_touch, touch_on_the_way
+from binaryast.kernels.arrays import quaternion_at, vector_at
+from binaryast.kernels.contact import bulge, can_touch, may_touch
 from binaryast.kernels.jit import TOUCH, Array, jit
-from binaryast.kernels.pair.layout import ATTITUDE_1, ATTITUDE_2, POSITION
+from binaryast.kernels.pair.layout import ATTITUDE_1, ATTITUDE_2, POSITION, VELOCITY
 
 
 @jit(TOUCH)
 def touching(state: Array, surfaces: Array, before: Array) -> int:
-    """Return 1 where the pair touches on the straight way from the position before a step, else 0."""
+    """Return 1 where the pair may touch on the way from the state before a step, else 0."""
     if not can_touch(surfaces, 1, 0):
         return 0
-    way = (vector_at(before, POSITION), vector_at(state, POSITION))
-    if touch_on_the_way(*way, matrix_at(state, ATTITUDE_2), matrix_at(state, ATTITUDE_1), surfaces, 1, 0):
-        return 1
-    return 0
+    x, y = vector_at(before, POSITION), vector_at(state, POSITION)
+    way = (y[0] - x[0], y[1] - x[1], y[2] - x[2])
+    aside = bulge(way, vector_at(before, VELOCITY), vector_at(state, VELOCITY))
+    turns = (
+        quaternion_at(before, ATTITUDE_2),
+        quaternion_at(state, ATTITUDE_2),
+        quaternion_at(before, ATTITUDE_1),
+        quaternion_at(state, ATTITUDE_1),
+    )
+    return 1 if may_touch(x, y, aside, turns, surfaces, 1, 0) else 0

@@ -1,0 +1,71 @@
+"""The closest approach of a run by compiled steps, where it lies within a step."""
+
+from collections.abc import Iterator
+from itertools import combinations
+
+import numpy as np
+
+from binaryast.kernels import loop
+from binaryast.locating import within
+from binaryast.schedule import Segment
+from binaryast.stepping import SteppedRun
+from binaryast.units import Floats
+
+MOST_STEPS = 20_000  # between rows: more are not followed again
+LOOKS = 4  # at each of the two steps about it
+
+
+def refine(run: SteppedRun) -> None:
+    """Replace the closest approach at ends of steps by that within the two steps about it.
+
+    The motion is followed again to there from the saved row before; this is aside from the run.
+    """
+    place = _place(run)
+    if place is None or place[0].stride > MOST_STEPS:
+        return
+    segment, begin, steps, row = place
+    w = run.working
+    kept = w.state.copy()
+    before = max(0, steps - 1)
+    origin = run.follow_again(row, segment, before % segment.stride)
+    for count in range(before, min(before + 2, segment.steps)):
+        length = min(segment.step, run.elapsed - begin - count * segment.step)
+        for distance, after in _approaches(run, origin, length):
+            if distance < run.watch.array[loop.CLOSEST]:
+                run.watch.array[loop.CLOSEST] = distance
+                run.closest_time = begin + count * segment.step + after
+        run.looker.look(origin, segment.step)
+        origin = run.looker.scratch.copy()
+    w.state[:] = kept
+
+
+def _place(run: SteppedRun) -> tuple[Segment, float, int, Floats] | None:
+    """Return the segment of the closest approach, when it began, after how many steps it was, and a row before."""
+    begin = 0.0
+    times, rows = np.concatenate(run.times), np.concatenate(run.rows)
+    for segment in run.segments:
+        steps = round((run.closest_time - begin) / segment.step)
+        if steps <= segment.steps and run.steps:
+            back = max(0, steps - 1) // segment.stride * segment.stride
+            row = int(np.argmin(np.abs(times - begin - back * segment.step)))
+            return segment, begin, steps, rows[row]
+        begin += segment.steps * segment.step
+    return None
+
+
+def _approaches(run: SteppedRun, origin: Floats, length: float) -> Iterator[tuple[float, float]]:
+    """Yield the distances of pairs of mass centres that are nearest within a time after a state, and when."""
+    if not length > 0.0:
+        return
+    places = run.looker.places
+    for two, one in combinations(range(len(places.position)), 2):
+
+        def rate(after: float, one: int = one, two: int = two) -> float:
+            run.looker.look(origin, after)
+            x, v = (places[k][one] - places[k][two] for k in range(2))
+            return float(x @ v)
+
+        if rate(0.0) < 0.0 < rate(length):
+            for root in within(rate, 0.0, length, LOOKS, 0.0, 1):
+                rate(root.time)
+                yield float(np.linalg.norm(places.position[one] - places.position[two])), root.time

@@ -1,0 +1,1 @@
+"""What events watch, and how a loop of steps looks for them."""
