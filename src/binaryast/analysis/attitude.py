@@ -144,8 +144,8 @@ def tumbling(run: Trajectory, bodies: Bodies = None) -> Tumbling:
     cosines = start * np.diagonal(a, axis1=1, axis2=2)
     angles = np.arccos(np.clip(cosines, -1.0, 1.0))
     first = Quantity([first_time(run.si.time, angle, TURNED_OVER) for angle in angles.T])
-    over = tuple(bool(when) for when in np.isfinite(first.value))
-    return Tumbling(run.time, quantity(angles, "rad").to("deg"), first, KINDS.get(over, "tumbling"))
+    x, y, z = np.isfinite(first.value).tolist()
+    return Tumbling(run.time, quantity(angles, "rad").to("deg"), first, KINDS.get((x, y, z), "tumbling"))
 
 
 def _in_orbit_frame(run: Trajectory, bodies: Bodies, what: str) -> Floats:

@@ -1,6 +1,6 @@
 """The Kepler orbit of a position and a velocity, by its vectors, and the angles that these make."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,8 +19,8 @@ class Angles(NamedTuple):
     true_anomaly: Floats
     mean_anomaly: Floats
     mean_longitude: Floats
-    circular: Floats
-    planar: Floats
+    circular: Any
+    planar: Any
 
 
 class Orbits(NamedTuple):
@@ -60,16 +60,16 @@ class Orbits(NamedTuple):
         tilt = np.arctan2(np.hypot(pole @ axes[:, 0], pole @ axes[:, 1]), pole @ axes[:, 2])
         if longitude is None:
             latitude = np.arctan2(_dot(self.place, across), _dot(self.place, to_node))
-            true = np.remainder(latitude - periapsis + np.pi, 2 * np.pi) - np.pi
-            mean = mean_anomaly(true, eccentricity)
-            longitude = node + periapsis + mean
+            true: Floats = np.remainder(latitude - periapsis + np.pi, 2 * np.pi) - np.pi
+            mean: Floats = mean_anomaly(true, eccentricity)
+            longitude = np.asarray(node + periapsis + mean)
         else:
             mean = np.remainder(longitude - node - periapsis + np.pi, 2 * np.pi) - np.pi
-            true = true_anomaly(mean, eccentricity)
+            true = np.asarray(true_anomaly(mean, eccentricity))
         return Angles(tilt, node, periapsis, true, mean, longitude, circular, planar)
 
-    def _plane(self, axes: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return unit vectors (N, 3) to the node, across it and of the pole, and where the node is put on the x axis."""
+    def _plane(self, axes: Floats) -> tuple[Floats, Floats, Floats, Any]:
+        """Return unit vectors (N, 3) to the node, across it and of the pole, and where the node is put on x."""
         pole = self.momentum / np.linalg.norm(self.momentum, axis=1, keepdims=True)
         node = np.cross(axes[:, 2], pole)
         planar = np.linalg.norm(node, axis=1) < ROUND_OFF
@@ -98,7 +98,7 @@ def mean_anomaly(true: Floats, e: Floats) -> Floats:
     half = np.sqrt(np.abs(1 - e) / (1 + e)) * np.tan(true / 2)
     eccentric = 2 * np.arctan(half)
     hyperbolic = 2 * np.arctanh(np.clip(half, -1 + 1e-15, 1 - 1e-15))
-    return np.where(e < 1, eccentric - e * np.sin(eccentric), e * np.sinh(hyperbolic) - hyperbolic)
+    return np.asarray(np.where(e < 1, eccentric - e * np.sin(eccentric), e * np.sinh(hyperbolic) - hyperbolic))
 
 
 def true_anomaly(mean: Floats, e: Floats) -> Floats:

@@ -99,7 +99,7 @@ def loss_of_synchrony(run: Trajectory, bodies: Bodies = None) -> Quantity:
 
 
 def first_time(time: Floats, values: Floats, bound: float) -> Quantity:
-    """Return when values are above a bound for the first time [d], on a straight line between rows; infinite if never."""
+    """Return when values first pass a bound [d], on a straight line between rows; infinite if they never do."""
     above = np.flatnonzero(values > bound)
     if not len(above):
         return quantity(np.inf, "s").to("d")
