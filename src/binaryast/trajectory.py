@@ -294,11 +294,11 @@ class Trajectory(Value):
         for k, leg in enumerate(legs):
             chosen = times[of_leg == k]
             if len(chosen):
-                parts.append(leg._interpolated(chosen) if len(leg) > 1 else leg.si)
+                parts.append(leg.interpolated(chosen) if len(leg) > 1 else leg.si)
         return TrajectoryFloats(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
 
-    def _interpolated(self, times: Floats) -> TrajectoryFloats:
-        """Return rows at times within this leg."""
+    def interpolated(self, times: Floats) -> TrajectoryFloats:
+        """Return rows at times [s] within this leg, which has two rows or more, by the interpolant of `at`."""
         found = dense.between(self._dense_rows, times)
         given = [
             _linear(times, self.si.time, array) for array in (self.si.work, self.si.impulse, self.si.angular_impulse)

@@ -199,7 +199,8 @@ def _solved(
     """Return the equilibrium, from the aligned one as a first guess."""
     primary, secondary = (_attitude(names) for names in axes)
     plain = Reduced(system, False, r, n)
-    x, turn = np.asarray(primary.T[:, 0]), np.asarray(primary.T @ secondary)
+    x: Floats = primary.T[:, 0]
+    turn: Floats = primary.T @ secondary
     whole = [plain.is_round(seen, x, turn) for seen in (False, True)]
     if all(whole):
         raise InputError(

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from astropy.units import Quantity
 
-from binaryast.analysis.between import interpolated
 from binaryast.analysis.orbit import mean_orbit_axes
 from binaryast.analysis.pairs import Bodies, often_enough, orbit_frames, orbit_rate, pair_of, relative_motion, turning
 from binaryast.errors import InputError, did_you_mean
@@ -70,9 +69,8 @@ class Passages(Value):
 def crossings(run: Trajectory, crossing: Crossing, bodies: Bodies = None) -> Trajectory:
     """Return a run's rows at the passages through a surface, each found between two rows.
 
-    Between rows the motion is a polynomial of degree 7 through the positions, velocities, attitudes and spins of the
-    four nearest, so errors fall with the eighth power of the time between them: with 32 rows a turn they are below 1e-9
-    of the distance.
+    Between rows the motion is that of `Trajectory.at`, whose errors fall with the eighth power of the time between them:
+    with 32 rows a turn they are below 1e-9 of the distance.
 
     Parameters
     ----------
@@ -113,6 +111,11 @@ def crossings(run: Trajectory, crossing: Crossing, bodies: Bodies = None) -> Tra
         raise InputError(f"crossings: the run passes nowhere through {name}: expected at least one passage")
     arrays = [np.concatenate(group) for group in zip(*(part.si for part in found), strict=True)]
     return replace(run, si=TrajectoryFloats(*arrays))
+
+
+def _between(leg: Trajectory, times: Floats) -> Trajectory:
+    """Return rows at other times (K,) [s] within a leg."""
+    return replace(leg, si=leg.interpolated(times))
 
 
 def poincare_section(run: Trajectory, crossing: Crossing = "periapsis", bodies: Bodies = None) -> PoincareSection:
@@ -256,6 +259,6 @@ def _crossings(leg: Trajectory, function: Callable[[Trajectory], Floats]) -> Tra
     low, high = leg.si.time[before].copy(), leg.si.time[before + 1].copy()
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        negative = function(interpolated(leg, middle)) < 0
+        negative = function(_between(leg, middle)) < 0
         low, high = np.where(negative, middle, low), np.where(negative, high, middle)
-    return interpolated(leg, high)
+    return _between(leg, high)
