@@ -57,7 +57,7 @@ FIGURES = {  # of the whole run, over every step; with their units
     "accuracy": "",  # None where an integrator was given
     "estimated_error": "",
 }
-DOUBTFUL_INTERPOLATION = 1e-6
+DOUBTFUL_INTERPOLATION = 1e-5
 OCCURRENCE_UNITS = dict(zip(OccurrenceFloats._fields, ("", "s", "", "m", "m / s", "", "rad / s"), strict=True))
 SOMETIMES = ("max_next_degree_term", "accuracy", "estimated_error")  # None of some runs, and in older files
 
@@ -211,7 +211,8 @@ class Trajectory(Value):
         Through the four rows about a moment goes a polynomial of degree 7 in positions, and one in the rotation vectors
         that lead from a uniform turn to the attitudes, so that these remain rotations (``dense.py``). The error falls
         with the eighth power of the distance of the rows, that of velocities and spins with the seventh; at a row it is
-        none. `interpolation_error` says how large it is. Where that is not enough, save more often, or ask
+        none. Of a method of order 2 the velocities are the rates of the positions only to its own error, which is in it
+        too. `interpolation_error` says how large it is. Where that is not enough, save more often, or ask
         `binaryast.retrace`, which follows the motion again from the row before.
 
         Parameters
@@ -235,7 +236,7 @@ class Trajectory(Value):
         Warns
         -----
         InterpolationWarning
-            Where the estimated error is above 1e-6, of the distance from the primary, or in rad.
+            Where the estimated error is above 1e-5, of the distance from the primary, or in rad.
 
         Examples
         --------

@@ -11,6 +11,14 @@ from binaryast.kernels.events.places import apart, matrix_of
 from binaryast.kernels.jit import EVENT, Array, Vector, jit
 from binaryast.kernels.so3 import cross, dot, rotate, rotate_back
 
+ROUNDING = 1e-14  # of a size: what is smaller is round-off, as the height above the plane of an orbit that stays in it
+
+
+@jit()
+def rounded(difference: float, size: float) -> float:
+    """Return a difference of two numbers of a size, zero where it is their round-off: that would pass through zero."""
+    return 0.0 if abs(difference) <= ROUNDING * size else difference
+
 
 @jit()
 def from_value(angle: float, value: float) -> float:
@@ -27,7 +35,7 @@ def from_value(angle: float, value: float) -> float:
 def separation(p: Array, t: float, position: Array, velocity: Array, attitude: Array, spin: Array) -> float:
     """Return |x1 - x2| - value; p: one, two, value [m]."""
     x = apart(position, int(p[0]), int(p[1]))
-    value: float = sqrt(dot(x, x)) - p[2]
+    value: float = rounded(sqrt(dot(x, x)) - p[2], p[2])
     return value
 
 
@@ -35,7 +43,7 @@ def separation(p: Array, t: float, position: Array, velocity: Array, attitude: A
 def radial_velocity(p: Array, t: float, position: Array, velocity: Array, attitude: Array, spin: Array) -> float:
     """Return d|x1 - x2|/dt - value; p: one, two, value [m/s]."""
     x, v = apart(position, int(p[0]), int(p[1])), apart(velocity, int(p[0]), int(p[1]))
-    value: float = dot(x, v) / sqrt(dot(x, x)) - p[2]
+    value: float = rounded(dot(x, v) / sqrt(dot(x, x)) - p[2], sqrt(dot(v, v)))
     return value
 
 
@@ -60,7 +68,8 @@ def plane(p: Array, t: float, position: Array, velocity: Array, attitude: Array,
     normal = (p[3], p[4], p[5])
     if p[2] >= 0.0:
         normal = rotate(matrix_of(attitude, int(p[2])), normal)
-    value: float = dot(normal, apart(position, int(p[0]), int(p[1]))) - p[6]
+    x = apart(position, int(p[0]), int(p[1]))
+    value: float = rounded(dot(normal, x) - p[6], sqrt(dot(x, x)))
     return value
 
 
