@@ -26,7 +26,8 @@ def lines_of(time: Floats, values: Complexes, count: int, *, power: int = 2) -> 
     The mean product of the values with the window (1 + cos)^power and exp(-i w t) is large near a line (Laskar 1993).
     The first guess is the largest of its fast Fourier transform; the maximum itself, between its neighbours, is where
     its derivative vanishes. Of two near lines each shifts the other's maximum: so, when a line has been added, all are
-    refined, each with the others taken off, and the amplitudes fitted together; in the end, until they stay. A line of a real series is one with its mirror image, a constant is fitted beside them.
+    refined, each with the others taken off, and the amplitudes fitted together; in the end, until they stay. A line of
+    a real series is one with its mirror image, and a constant is fitted beside them.
 
     Parameters
     ----------
