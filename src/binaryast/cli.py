@@ -126,7 +126,8 @@ def parser() -> argparse.ArgumentParser:
 
     plotting = commands.add_parser("plot", help="draw a run")
     _file(plotting.add_argument("file", metavar="FILE.h5", help="a run"))
-    kinds = ("orbit", "orbit_from_primary", "separation", "spins", "libration", "energy_exchange", "conserved")
+    kinds = ["orbit", "orbit_from_primary", "separation", "spins", "libration", "energy_exchange", "conserved"]
+    kinds += ["roll_pitch_yaw", "spectrum", "poincare_section"]
     plotting.add_argument("--kind", choices=kinds, help="one picture instead of all on a page")
     _file(plotting.add_argument("-o", "--output", metavar="FILE.png", help="png, pdf or svg (default: FILE.png)"))
     plotting.add_argument("--force", action="store_true", help="replace a file that exists")

@@ -12,7 +12,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from binaryast.analysis import libration_angle, mean_orbit_axes
+from binaryast.analysis_plots import elements as elements  # public functions of this module
+from binaryast.analysis_plots import poincare_section, roll_pitch_yaw, spectrum
 from binaryast.bodies import RigidBody
+from binaryast.canvas import DARK, PRIMARY, SECONDARY, axes_of, colour, length_unit, over_time, plain, time_of
 from binaryast.errors import InputError
 from binaryast.storage import as_path, refuse, replace_whole
 from binaryast.summaries import joined
@@ -20,53 +23,7 @@ from binaryast.surface_plots import surface as surface  # a public function of t
 from binaryast.trajectory import Trajectory
 from binaryast.units import Floats, brief
 
-PRIMARY, SECONDARY, DARK = "#1f4e79", "#c8553d", "#333333"
-COLOURS = (PRIMARY, SECONDARY, "#6a994e", "#7b2d8b", "#e0a030", "#2a9d8f", "#8d6b4f", "#888888")
 FORMATS = ("png", "pdf", "svg")
-
-
-def _time(run: Trajectory) -> tuple[Floats, str]:
-    """Return the time in the unit that reads best, and its name."""
-    end = run.si.time[-1]
-    for unit, size in (("days", 86400.0), ("hours", 3600.0)):
-        if end >= 2 * size:
-            return run.si.time / size, unit
-    return run.si.time, "s"
-
-
-def _colour(i: int) -> str:
-    return COLOURS[i % len(COLOURS)]
-
-
-def _plain(text: str) -> str:
-    """Return a text that matplotlib does not take for a formula."""
-    return text.replace("$", r"\$")
-
-
-def _length(largest: float) -> tuple[float, str]:
-    """Return the size and the name of the length unit that reads best."""
-    return (1000.0, "km") if largest >= 10000 else (1.0, "m")
-
-
-def _axes(run: Trajectory, ax: Axes | None) -> Axes:
-    """Look at what is to be drawn; return the Axes given, or one in a new figure, which ``plt.show()`` will show."""
-    if not isinstance(run, Trajectory):
-        raise InputError(f"run: expected a ba.Trajectory, got {brief(run)}")
-    if ax is not None:
-        return ax
-    import matplotlib.pyplot as plt  # half a second, not needed where a figure goes straight to a file
-
-    return plt.subplots(layout="constrained")[1]
-
-
-def _over_time(ax: Axes, run: Trajectory, label: str, title: str) -> Axes:
-    ax.set(xlabel=f"time [{_time(run)[1]}]", ylabel=label, title=title)
-    time, _ = _time(run)
-    for when in time[1:][np.diff(time) == 0]:  # an impulse
-        ax.axvline(when, color=DARK, lw=0.6, ls=":")
-    ax.margins(x=0)
-    ax.grid(alpha=0.25)
-    return ax
 
 
 def orbit(run: Trajectory, ax: Axes | None = None, *, frame: str = "inertial") -> Axes:
@@ -97,7 +54,7 @@ def orbit(run: Trajectory, ax: Axes | None = None, *, frame: str = "inertial") -
     >>> run = ba.propagate(system, state, duration=1 * u.day, integrator=ba.LGVI(step=40 * u.s))
     >>> ax = ba.plotting.orbit(run)
     """
-    ax = _axes(run, ax)
+    ax = axes_of(run, ax)
     if frame == "inertial":
         plane = _mean_plane(run)
         paths, attitudes = run.si.position, run.si.attitude[-1]
@@ -107,18 +64,18 @@ def orbit(run: Trajectory, ax: Axes | None = None, *, frame: str = "inertial") -
         to_primary = np.swapaxes(run.si.attitude[:, 0], -1, -2)
         paths = np.einsum("nij,nbj->nbi", to_primary, run.si.position - run.si.position[:, :1])
         attitudes = to_primary[-1] @ run.si.attitude[-1]
-        place, subject = "in the primary's axes", f"Seen from {_plain(run.system.names[0])}, turning with it"
+        place, subject = "in the primary's axes", f"Seen from {plain(run.system.names[0])}, turning with it"
     else:
         raise InputError(f"orbit: frame={frame!r}: expected 'inertial' or 'primary'")
-    size, unit = _length(float(np.abs(paths).max()))
+    size, unit = length_unit(float(np.abs(paths).max()))
     for i, body in enumerate(run.system.bodies):
         path = paths[:, i] @ plane.T / size
-        ax.plot(*path.T, _style(path), color=_colour(i), lw=0.7, ms=1.5, alpha=0.7, label=_plain(body.name))
+        ax.plot(*path.T, _style(path), color=colour(i), lw=0.7, ms=1.5, alpha=0.7, label=plain(body.name))
         outlines = _outlines(body, plane @ attitudes[i])
         for corners in outlines:
-            ax.add_patch(Polygon(path[-1] + corners / size, fc=_colour(i), ec=DARK, lw=0.5, alpha=0.9, zorder=3))
+            ax.add_patch(Polygon(path[-1] + corners / size, fc=colour(i), ec=DARK, lw=0.5, alpha=0.9, zorder=3))
         if not outlines:
-            ax.plot(*path[-1], "o", color=_colour(i))
+            ax.plot(*path[-1], "o", color=colour(i))
     ax.set(xlabel=f"x [{unit}]  ({place})", ylabel=f"y [{unit}]", title=subject, aspect="equal")
     ax.grid(alpha=0.25)
     ax.legend(loc="upper right", fontsize="small", markerscale=4)
@@ -180,22 +137,22 @@ def _ellipse(matrix: Floats) -> Floats:
 
 def separation(run: Trajectory, ax: Axes | None = None) -> Axes:
     """Draw the distance of the mass centres against time; of several bodies, of each from the primary."""
-    ax = _axes(run, ax)
+    ax = axes_of(run, ax)
     names = run.system.names
     distances = [run.distance(0, i).value for i in range(1, len(names))]
-    size, unit = _length(float(np.max(distances)))
+    size, unit = length_unit(float(np.max(distances)))
     for i, values in enumerate(distances, start=1):
-        colour = DARK if len(names) == 2 else _colour(i)
-        ax.plot(_time(run)[0], values / size, color=colour, lw=0.8, label=_plain(names[i]))
+        ink = DARK if len(names) == 2 else colour(i)
+        ax.plot(time_of(run)[0], values / size, color=ink, lw=0.8, label=plain(names[i]))
     if len(names) == 2:
-        return _over_time(ax, run, f"separation [{unit}]", "Separation of the mass centres")
+        return over_time(ax, run, f"separation [{unit}]", "Separation of the mass centres")
     ax.legend(loc="best", fontsize="small")
-    return _over_time(ax, run, f"distance [{unit}]", f"Distance from {_plain(names[0])}")
+    return over_time(ax, run, f"distance [{unit}]", f"Distance from {plain(names[0])}")
 
 
 def spins(run: Trajectory, ax: Axes | None = None) -> Axes:
     """Draw each body's spin rate against time: its relative change, or itself where one starts at rest."""
-    ax = _axes(run, ax)
+    ax = axes_of(run, ax)
     rates = np.linalg.norm(run.si.spin, axis=-1)
     turning = [i for i, body in enumerate(run.system.bodies) if not body.is_point]
     if not turning:
@@ -203,20 +160,20 @@ def spins(run: Trajectory, ax: Axes | None = None) -> Axes:
     relative = bool(np.all(rates[0, turning] > 0))
     for i in turning:
         values = rates[:, i] / rates[0, i] - 1 if relative else rates[:, i]
-        name = _plain(run.system.names[i])
+        name = plain(run.system.names[i])
         label = name + (f": {2 * np.pi / rates[0, i] / 3600:.4g} h at the start" if relative else "")
-        ax.plot(_time(run)[0], values, color=_colour(i), lw=0.8, label=label)
+        ax.plot(time_of(run)[0], values, color=colour(i), lw=0.8, label=label)
     ax.legend(loc="best", fontsize="small")
-    return _over_time(ax, run, "spin rate / that at the start - 1" if relative else "spin rate [rad/s]", "Spins")
+    return over_time(ax, run, "spin rate / that at the start - 1" if relative else "spin rate [rad/s]", "Spins")
 
 
 def libration(run: Trajectory, ax: Axes | None = None) -> Axes:
     """Draw the angle from the line of centres to a body's x axis; of several, of those that keep it below 90 deg."""
-    ax = _axes(run, ax)
+    ax = axes_of(run, ax)
     names = run.system.names
     if len(names) == 2:
-        ax.plot(_time(run)[0], np.degrees(libration_angle(run).value), color=SECONDARY, lw=0.8)
-        return _over_time(ax, run, "libration angle [deg]", f"Libration of {_plain(names[1])}")
+        ax.plot(time_of(run)[0], np.degrees(libration_angle(run).value), color=SECONDARY, lw=0.8)
+        return over_time(ax, run, "libration angle [deg]", f"Libration of {plain(names[1])}")
     for i in range(1, len(names)):
         if run.system.bodies[i].is_point:
             continue
@@ -225,26 +182,26 @@ def libration(run: Trajectory, ax: Axes | None = None) -> Axes:
         except InputError:  # its rows are too far apart, or it moves on a line: others may not be
             continue
         if np.abs(angle).max() < 90:
-            ax.plot(_time(run)[0], angle, color=_colour(i), lw=0.8, label=_plain(names[i]))
+            ax.plot(time_of(run)[0], angle, color=colour(i), lw=0.8, label=plain(names[i]))
     if not ax.lines:
         raise InputError(f"no body keeps its x axis towards {names[0]}: there is no libration to draw")
     ax.legend(loc="best", fontsize="small")
-    return _over_time(ax, run, "libration angle [deg]", f"Libration about {_plain(names[0])}")
+    return over_time(ax, run, "libration angle [deg]", f"Libration about {plain(names[0])}")
 
 
 def energy_exchange(run: Trajectory, ax: Axes | None = None) -> Axes:
     """Draw how energy goes to and fro between orbit, spins and potential, each from its value at the start."""
-    ax = _axes(run, ax)
-    time, _ = _time(run)
+    ax = axes_of(run, ax)
+    time, _ = time_of(run)
     scale = abs(run.si.potential_energy[0])
-    for values, label, colour in (
+    for values, label, ink in (
         (run.translational_energy, "translation", PRIMARY),
         (run.rotational_energy, "rotation", SECONDARY),
         (run.potential_energy, "potential", "#6a994e"),
     ):
-        ax.plot(time, (values.value - values.value[0]) / scale, color=colour, lw=0.6, alpha=0.8, label=label)
+        ax.plot(time, (values.value - values.value[0]) / scale, color=ink, lw=0.6, alpha=0.8, label=label)
     ax.legend(loc="best", fontsize="small")
-    return _over_time(ax, run, "change / |U at the start|", "Exchange of energy")
+    return over_time(ax, run, "change / |U at the start|", "Exchange of energy")
 
 
 def conserved(run: Trajectory, ax: Axes | None = None) -> Axes:
@@ -252,8 +209,8 @@ def conserved(run: Trajectory, ax: Axes | None = None) -> Axes:
 
     Those of energy and angular momentum are from the start, or the impulse before.
     """
-    ax = _axes(run, ax)
-    time, _ = _time(run)
+    ax = axes_of(run, ax)
+    time, _ = time_of(run)
     energy = np.concatenate([_relative_error(leg.energy.value[:, None]) for leg in run.legs])
     momentum = np.concatenate([_relative_error(leg.angular_momentum.value) for leg in run.legs])
     curves: tuple[tuple[Floats, str, str], ...] = (
@@ -262,10 +219,10 @@ def conserved(run: Trajectory, ax: Axes | None = None) -> Axes:
         (momentum, "angular momentum", SECONDARY),
     )
     floor = np.finfo(float).eps / 4  # an error of zero has no logarithm
-    for values, label, colour in curves:
-        ax.semilogy(time, np.maximum(values, floor), color=colour, lw=0.8, label=label)
+    for values, label, ink in curves:
+        ax.semilogy(time, np.maximum(values, floor), color=ink, lw=0.8, label=label)
     ax.legend(loc="best", fontsize="small")
-    return _over_time(ax, run, "relative error", "What should be conserved")
+    return over_time(ax, run, "relative error", "What should be conserved")
 
 
 def _relative_error(values: Floats) -> Floats:
@@ -282,6 +239,9 @@ KINDS: dict[str, Callable[..., Any]] = {
     "libration": libration,
     "energy_exchange": energy_exchange,
     "conserved": conserved,
+    "roll_pitch_yaw": roll_pitch_yaw,
+    "spectrum": spectrum,
+    "poincare_section": poincare_section,
 }
 
 
@@ -315,7 +275,7 @@ def overview(run: Trajectory, figure: Figure | None = None) -> Figure:
     figure.set_size_inches(18, 8.5)
     axes = figure.subplots(2, 4)
     figure.subplots_adjust(left=0.045, right=0.985, bottom=0.07, top=0.9, wspace=0.36, hspace=0.3)
-    figure.suptitle(_plain(f"{joined(run.system.names)}: {_title(run)}"))
+    figure.suptitle(plain(f"{joined(run.system.names)}: {_title(run)}"))
     panels: dict[Callable[..., Any], Axes] = {
         orbit: axes[0, 0],
         orbit_from_primary: axes[1, 0],
@@ -335,7 +295,7 @@ def overview(run: Trajectory, figure: Figure | None = None) -> Figure:
 
 
 def _title(run: Trajectory) -> str:
-    time, unit = _time(run)
+    time, unit = time_of(run)
     method = run.integrator
     return f"{time[-1]:.4g} {unit}, {type(method).__name__} of order {method.order}, steps of {run.step.value:g} s"
 

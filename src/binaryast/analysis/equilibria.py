@@ -197,10 +197,11 @@ def _solved(
     system: System, axes: tuple[tuple[str, str], tuple[str, str]], r: float, n: float, *, by_period: bool
 ) -> Equilibrium:
     """Return the equilibrium, from the aligned one as a first guess."""
+    x: Floats
+    turn: Floats
+    rate: Floats
     primary, secondary = (_attitude(names) for names in axes)
     plain = Reduced(system, False, r, n)
-    x: Floats = primary.T[:, 0]
-    turn: Floats = primary.T @ secondary
     whole = [plain.is_round(seen, x, turn) for seen in (False, True)]
     if all(whole):
         raise InputError(
@@ -220,7 +221,7 @@ def _solved(
     oscillating = values[(values.imag > NEUTRAL)]
     growth = float(values.real.max(initial=0.0))
     growth = growth if growth > NEUTRAL else 0.0
-    _, _, potential = reduced.pull(x, turn)
+    potential = reduced.pull(x, turn).energy
     seen, own = reduced.moments
     spins = np.sum(seen * (turn.T @ rate) ** 2) + np.sum(own * rate**2)
     kinetic = 0.5 * (np.sum(np.cross(rate, x) ** 2) + spins)

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from binaryast.units import Floats
 
-ROUNDS = 60  # of refining all lines together
-SETTLED = 1e-15  # of a frequency times the time between rows, below which a round changes nothing any more
+ROUNDS = 20  # of refining all lines together
+SETTLED = 1e-12  # rad over the whole time, below which a round changes nothing any more
 Complexes: TypeAlias = NDArray[Any]
 
 
@@ -26,8 +26,8 @@ def lines_of(time: Floats, values: Complexes, count: int, *, power: int = 2) -> 
     The mean product of the values with the window (1 + cos)^power and exp(-i w t) is large near a line (Laskar 1993).
     The first guess is the largest of its fast Fourier transform; the maximum itself, between its neighbours, is where
     its derivative vanishes. Of two near lines each shifts the other's maximum: so, when a line has been added, all are
-    refined again and again, each with the others taken off, until they stay where they are, the amplitudes of all
-    being fitted together. A line of a real series is one with its mirror image, a constant is fitted beside them.
+    refined, each with the others taken off, and the amplitudes fitted together; in the end, until they stay. A line of
+    a real series is one with its mirror image, and a constant is fitted beside them.
 
     Parameters
     ----------
@@ -62,7 +62,8 @@ def lines_of(time: Floats, values: Complexes, count: int, *, power: int = 2) -> 
         if not float(np.abs(rest).max(initial=0.0)) > 1e-14 * max(size, float(np.abs(values).max(initial=0.0))):
             break
         found = np.append(found, _peak(middle, weights, rest, *_guess(middle, weights, rest, real)))
-        found, rest = _refined(middle, weights, values, found, real)
+        found, rest = _refined(middle, weights, values, found, real, rounds=2)
+    found, rest = _refined(middle, weights, values, found, real, rounds=ROUNDS)
     amplitudes, rest = _fit(middle, weights, values, found, real)
     order = np.argsort(-np.abs(amplitudes), kind="stable")
     amplitudes = amplitudes * np.exp(1j * found * (time[0] - time.mean()))
@@ -96,18 +97,22 @@ def _peak(time: Floats, weights: Floats, values: Complexes, guess: float, half: 
     return float(brentq(slope, low, high, xtol=1e-18, rtol=4 * np.finfo(float).eps))
 
 
-def _refined(time: Floats, weights: Floats, values: Complexes, found: Floats, real: bool) -> tuple[Floats, Complexes]:
+def _refined(
+    time: Floats, weights: Floats, values: Complexes, found: Floats, real: bool, rounds: int
+) -> tuple[Floats, Complexes]:
     """Return the frequencies after each was sought with all others taken off, until none moves; and what is left."""
-    step = time[1] - time[0]
+    length = float(time[-1] - time[0])
     amplitudes, rest = _fit(time, weights, values, found, real)
-    half = np.pi / (2 * len(time) * step)
-    for _ in range(ROUNDS):
-        before = found.copy()
-        for k in range(len(found)):
-            wave = amplitudes[k] * np.exp(1j * found[k] * time)
-            found[k] = _peak(time, weights, rest + (0.5 * wave if real else wave), float(found[k]), half)
-            amplitudes, rest = _fit(time, weights, values, found, real)
-        if np.abs(found - before).max() * step < SETTLED:
+    for _ in range(rounds):
+        before = found
+        waves = amplitudes * np.exp(1j * np.outer(time, found)) * (0.5 if real else 1.0)
+        refined = [
+            _peak(time, weights, rest + wave, float(frequency), np.pi / (2 * length))
+            for wave, frequency in zip(waves.T, found, strict=True)
+        ]
+        found = np.array(refined)
+        amplitudes, rest = _fit(time, weights, values, found, real)
+        if not len(found) or np.abs(found - before).max() * length < SETTLED:
             break
     return found, rest
 

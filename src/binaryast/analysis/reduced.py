@@ -7,6 +7,7 @@ Pi2.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -17,6 +18,15 @@ from binaryast.units import Floats
 EQUAL = 1e-12  # relative difference of moments of inertia of a round body
 STENCIL = np.array([4 / 5, -1 / 5, 4 / 105, -1 / 280])  # central differences of order 8
 STEP = 4e-3  # of them, in numbers of order one: their error and the round-off are below 1e-12
+
+
+class Pull(NamedTuple):
+    """dU/dX (3,), the torques on the body that is seen and on the one whose frame it is (3,), and U."""
+
+    gradient: Floats
+    torque_seen: Floats
+    torque_own: Floats
+    energy: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,16 +54,18 @@ class Reduced:
         both = [body.si.moments / (self.system.reduced_mass * self.separation**2) for body in self.system.bodies]
         return (both[0], both[1]) if self.swapped else (both[1], both[0])
 
-    def pull(self, x: Floats, r: Floats) -> tuple[Floats, Floats, float]:
-        """Return dU/dX (3,), M (3,) and U at X and R, in this frame."""
-        force = self.system.reduced_mass * self.separation * self.rate**2
-        if not self.swapped:
-            found = np.array(self.system.attraction(self.separation * x, r))
-            return found[1:4] / force, found[4:] / (force * self.separation), found[0] / (force * self.separation)
-        found = np.array(self.system.attraction(-self.separation * (r.T @ x), r.T))
-        gradient = -r @ found[1:4] / force  # the force on the primary is what the secondary feels, turned round
-        torque_on_primary = r @ (np.cross(-self.separation * (r.T @ x), found[1:4]) + found[4:])
-        return gradient, -torque_on_primary / (force * self.separation), found[0] / (force * self.separation)
+    def pull(self, x: Floats, r: Floats) -> Pull:
+        """Return what the bodies feel at X and R, in this frame."""
+        size = self.system.reduced_mass * self.separation * self.rate**2
+        length = self.separation
+        place, turn = (-length * (r.T @ x), r.T) if self.swapped else (length * x, r)
+        found = np.array(self.system.attraction(place, turn))
+        gradient, moment = found[1:4], found[4:]
+        torques = -moment, np.cross(place, gradient) + moment  # on the secondary, and on the primary
+        if self.swapped:  # turned into the secondary's frame; the force is on the primary, which is seen
+            gradient, torques = -r @ gradient, (r @ torques[1], r @ torques[0])
+        seen, own = torques
+        return Pull(gradient / size, seen / (size * length), own / (size * length), found[0] / (size * length))
 
     def imbalance(self, x: Floats, r: Floats, rate: Floats) -> Floats:
         """Return what is left of the force and both torques (9,) where everything turns as one: (63)-(65).
@@ -61,13 +73,13 @@ class Reduced:
         Torques are over the moments of their bodies.
         """
         seen, own = self.moments
-        gradient, moment, _ = self.pull(x, r)
+        found = self.pull(x, r)
         spin = r @ (seen * (r.T @ rate))
         return np.concatenate(
             [
-                -gradient - np.cross(rate, np.cross(rate, x)),
-                (-moment - np.cross(rate, spin)) / _size(seen),
-                (np.cross(x, gradient) + moment - np.cross(rate, own * rate)) / _size(own),
+                -found.gradient - np.cross(rate, np.cross(rate, x)),
+                (found.torque_seen - np.cross(rate, spin)) / _size(seen),
+                (found.torque_own - np.cross(rate, own * rate)) / _size(own),
             ]
         )
 
@@ -78,16 +90,16 @@ class Reduced:
         def rates(z: Floats) -> Floats:
             place, theta, gamma, Pi, Pi2 = z.reshape(5, 3)
             turned = Rotation.from_rotvec(theta).as_matrix() @ r
-            gradient, moment, _ = self.pull(place, turned)
+            found = self.pull(place, turned)
             Omega = turned @ ((turned.T @ Pi) / np.where(seen > 0, seen, 1.0)) if np.any(seen) else np.zeros(3)
             Omega2 = Pi2 / np.where(own > 0, own, 1.0)
             return np.concatenate(
                 [
                     gamma - np.cross(Omega2, place),  # (66)
                     Omega - Omega2,  # (67), to first order
-                    -gradient - np.cross(Omega2, gamma),  # (63)
-                    -moment - np.cross(Omega2, Pi),  # (64)
-                    np.cross(place, gradient) + moment - np.cross(Omega2, Pi2),  # (65)
+                    -found.gradient - np.cross(Omega2, gamma),  # (63)
+                    found.torque_seen - np.cross(Omega2, Pi),  # (64)
+                    found.torque_own - np.cross(Omega2, Pi2),  # (65)
                 ]
             )
 
@@ -102,10 +114,10 @@ class Reduced:
         moments = self.moments[0 if seen else 1]
         if np.ptp(moments) > EQUAL * moments.max():
             return False
-        _, _, energy = self.pull(x, r)
+        energy = self.pull(x, r).energy
         for turn in Rotation.from_rotvec([[0.3, 0.4, 0.5], [1.0, -0.7, 0.4]]).as_matrix():
             place = (x, turn @ r) if seen else (turn @ x, turn @ r)
-            if abs(self.pull(*place)[2] / energy - 1) > 10 * EQUAL:
+            if abs(self.pull(*place).energy / energy - 1) > 10 * EQUAL:
                 return False
         return True
 

@@ -69,8 +69,8 @@ class Passages(Value):
 def crossings(run: Trajectory, crossing: Crossing, bodies: Bodies = None) -> Trajectory:
     """Return a run's rows at the passages through a surface, each found between two rows.
 
-    Between rows the motion is that of `Trajectory.at`, whose errors fall with the eighth power of the time between them:
-    with 32 rows a turn they are below 1e-9 of the distance.
+    Between rows the motion is that of `Trajectory.at`, whose errors fall with the eighth power of the time between
+    them: with 32 rows a turn they are below 1e-9 of the distance.
 
     Parameters
     ----------
