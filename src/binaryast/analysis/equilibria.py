@@ -202,6 +202,7 @@ def _solved(
     rate: Floats
     primary, secondary = (_attitude(names) for names in axes)
     plain = Reduced(system, False, r, n)
+    x, turn = primary.T[:, 0], primary.T @ secondary
     whole = [plain.is_round(seen, x, turn) for seen in (False, True)]
     if all(whole):
         raise InputError(
