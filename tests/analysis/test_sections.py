@@ -3,7 +3,6 @@
 import astropy.units as u
 import numpy as np
 import pytest
-from binaryast.analysis.between import interpolated
 
 import binaryast as ba
 from binaryast.errors import InputError
@@ -31,8 +30,8 @@ def test_the_interpolant_has_order_eight(tumbling: tuple[ba.System, ba.State]) -
     middle = slice(40, -40)
     errors = []
     for every in (4, 8):
-        between = interpolated(fine[::every], fine.si.time[middle])
-        pairs = zip(between.si[1:5], fine.si[1:5], strict=True)
+        between = fine[::every].interpolated(fine.si.time[middle])
+        pairs = zip(between[1:5], fine.si[1:5], strict=True)
         errors.append([np.abs(one - two[middle]).max() / np.abs(two).max() for one, two in pairs])
     orders = np.log2(np.array(errors[1]) / np.array(errors[0]))
     assert np.all(orders > [7.5, 6.5, 7.5, 6.5])
