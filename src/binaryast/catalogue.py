@@ -18,7 +18,7 @@ def names() -> list[str]:
     --------
     >>> import binaryast as ba
     >>> ba.catalogue.names()
-    ['dart', 'didymos', 'dumbbells', 'moshup', 'patroclus', 'sn263']
+    ['cubesat', 'dart', 'didymos', 'dumbbells', 'moshup', 'patroclus', 'sn263']
     """
     return sorted(file.name.removesuffix(".toml") for file in _ENTRIES.iterdir() if file.name.endswith(".toml"))
 

@@ -1,7 +1,6 @@
 """The closest approach of a run by compiled steps, where it lies within a step."""
 
 from collections.abc import Iterator
-from itertools import combinations
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from binaryast.stepping import SteppedRun
 from binaryast.units import Floats
 
 MOST_STEPS = 20_000  # between rows: more are not followed again
+MOST_PAIRS = 100  # nor are more of these, which would take longer than the run
 LOOKS = 4  # at each of the two steps about it
 
 
@@ -21,7 +21,7 @@ def refine(run: SteppedRun) -> None:
     The motion is followed again to there from the saved row before; this is aside from the run.
     """
     place = _place(run)
-    if place is None or place[0].stride > MOST_STEPS:
+    if place is None or place[0].stride > MOST_STEPS or len(run.system.pairs) > MOST_PAIRS:
         return
     segment, begin, steps, row = place
     w = run.working
@@ -58,7 +58,7 @@ def _approaches(run: SteppedRun, origin: Floats, length: float) -> Iterator[tupl
     if not length > 0.0:
         return
     places = run.looker.places
-    for two, one in combinations(range(len(places.position)), 2):
+    for two, one, *_ in run.system.pairs:
 
         def rate(after: float, one: int = one, two: int = two) -> float:
             run.looker.look(origin, after)
