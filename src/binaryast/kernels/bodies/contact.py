@@ -17,13 +17,17 @@ def apart(a: Array, one: int, two: int) -> Vector:
 def touching(state: Array, surfaces: Array, before: Array) -> int:
     """Return which pair may touch, counted from 1 in the order (0, 1), (0, 2), .. (1, 2), .., or 0."""
     n = (state.size - size_of(0)) // (size_of(1) - size_of(0))
-    extent = 0.0
+    extent, pulling = 0.0, 0.0
     for i in range(n):
         extent += surfaces[HEADER * i + RADIUS]
+        pulling += surfaces[HEADER * i + PULLS]
     if extent == 0.0:  # points only
         return 0
     pair, v, q = 0, velocity_of(n), attitude_of(n)
     for two in range(n):
+        pulling -= surfaces[HEADER * two + PULLS]
+        if pulling == 0.0 and surfaces[HEADER * two + PULLS] == 0.0:  # no pairs are left
+            break
         for one in range(two + 1, n):
             if surfaces[HEADER * one + PULLS] + surfaces[HEADER * two + PULLS] == 0.0:  # they are no pair
                 continue
