@@ -384,10 +384,11 @@ class ThirdBody(Distant):
                 f"ThirdBody: its times go from {times[0]:g} s to {times[-1]:g} s of the run, which goes from "
                 f"{span.begin:g} s to {span.end:g} s: expected a table that covers it"
             )
-        pieces = PPoly.from_spline(make_interp_spline(times, self.positions.value, k=5))
-        real = np.diff(pieces.x) > 0  # knots at the ends lie on each other
-        ends = np.append(pieces.x[:-1][real], pieces.x[-1])
-        coefficients = np.moveaxis(pieces.c[:, real], 0, 1)  # piece, power, axis
+        axes = [PPoly.from_spline(make_interp_spline(times, places, k=5)) for places in self.positions.value.T]
+        knots = axes[0].x
+        real = np.diff(knots) > 0  # knots at the ends lie on each other
+        ends = np.append(knots[:-1][real], knots[-1])
+        coefficients = np.stack([axis.c[:, real].T for axis in axes], axis=-1)  # piece, power, axis
         return np.concatenate([[paths.SPLINE, real.sum()], ends, coefficients.ravel()])
 
     @property
