@@ -7,6 +7,7 @@ from validation.cases import (
     exact_ellipsoids,
     exact_rotor,
     f2bptoolkit,
+    flyby,
     free_tops,
     gravity_gradient,
     gubas,
@@ -22,6 +23,7 @@ from validation.cases import (
     polyhedron_point,
     small_perturbation,
     sphere_ellipsoid,
+    sun,
     synchronous,
     triple,
     two_rods,
@@ -51,4 +53,6 @@ ALL: tuple[Case, ...] = (
     libration.CASE,
     gravity_gradient.CASE,
     oblateness.CASE,
+    sun.CASE,
+    flyby.CASE,
 )
