@@ -22,6 +22,7 @@ from validation.cases import (
     polyhedron_pair,
     polyhedron_point,
     small_perturbation,
+    spacecraft,
     sphere_ellipsoid,
     sun,
     synchronous,
@@ -55,4 +56,5 @@ ALL: tuple[Case, ...] = (
     oblateness.CASE,
     sun.CASE,
     flyby.CASE,
+    spacecraft.CASE,
 )

@@ -129,7 +129,10 @@ class OutsideMotion:
         first_term_only: bool = False,
     ) -> None:
         self.system, self.units = system, Units.of(system, state)
-        self.start = Start.of(system, state, self.units)
+        start = Start.of(system, state, self.units)
+        pulling = np.array([float(body.pulls) for body in system.bodies]).astype(REAL) * start.m
+        self.origin, self.drift = (pulling @ rows / pulling.sum() for rows in (start.x, start.v))
+        self.start = start._replace(x=start.x - self.origin, v=start.v - self.drift)  # from the barycentre
         self.distant, self.first_term_only = distant, first_term_only
         self.rigid = np.array([not body.is_point for body in system.bodies])
         n, k = len(system.bodies), len(distant)
@@ -216,4 +219,5 @@ class OutsideMotion:
             x[i], v[i], at = y[at : at + 3], y[at + 3 : at + 6], at + 6
             if self.rigid[i]:
                 R[i], Omega[i], at = y[at : at + 9].reshape(3, 3), y[at + 9 : at + 12], at + 12
+        x, v = x + self.origin + self.drift * REAL(time / self.units.time), v + self.drift
         return taylor.floats(taylor.in_si(Snapshot(v, Omega, x, R), self.units))
