@@ -17,6 +17,7 @@ from validation.cases import (
     oblateness,
     orders,
     paper,
+    perturbations,
     phase_drift,
     pluto_charon,
     polyhedron_pair,
@@ -26,6 +27,7 @@ from validation.cases import (
     sphere_ellipsoid,
     sun,
     synchronous,
+    tides,
     triple,
     two_rods,
 )
@@ -57,4 +59,6 @@ ALL: tuple[Case, ...] = (
     sun.CASE,
     flyby.CASE,
     spacecraft.CASE,
+    tides.CASE,
+    perturbations.CASE,
 )
