@@ -119,6 +119,17 @@ def of_balance() -> list[Check]:
                 shown=f"{errors[-1]:.2g} of the change in steps of {steps[-1]:g} s",
             )
         )
+    run = ba.propagate(system, state, duration=2 * u.day, integrator=ba.Splitting(600 * u.s, scheme="ss10"))
+    checks.append(
+        Check(
+            "e = 0.1, order 10: energy less the work done, over |E0|, the largest error",
+            run.max_relative_energy_error,
+            3e-15,
+            f"rounding; the tide takes {abs(float(run.work[-1] / run.energy[0])):.1g} of the energy",
+            headline=True,
+            roundoff=True,
+        )
+    )
     return checks
 
 
