@@ -124,6 +124,30 @@ MISTAKES = {
         "return gradient[0] - k * x[0], gradient[1] - k * x[1], gradient[2] - k * x[2]",
         "return gradient[0], gradient[1], gradient[2] - 0.0 * k",
     ),
+    "tide-of-sun": Mistake(
+        "a next term in Battin's f(q), the tide of a distant mass",
+        "kernels/external/third_body.py",
+        "f = less * (w * w + w + 1.0)",
+        "f = less * (w * w + w + 1.0 + less)",
+    ),
+    "torque-of-sun": Mistake(
+        "sign of the torque of a distant mass",
+        "kernels/external/third_body.py",
+        "jd, n = rotate(r, jb), cross(b, jb)",
+        "jd, n = rotate(r, jb), cross(jb, b)",
+    ),
+    "lag-in-time": Mistake(
+        "factor 2 in what a lag in time does along the line of centres",
+        "kernels/external/tides.py",
+        "along = 2.0 * dot(r, v) / square",
+        "along = dot(r, v) / square",
+    ),
+    "work-at-the-middle": Mistake(
+        "half of a third of how the power of a force changes in a kick",
+        "kernels/pair/disturbed.py",
+        "power -= sign * power_of_all(external) / 3.0",
+        "power -= sign * power_of_all(external) / 6.0",
+    ),
 }  # fmt: skip
 
 

@@ -63,11 +63,12 @@ def _rows(runs: Sequence[Trajectory]) -> TrajectoryFloats:
     What came from outside adds up over the legs.
     """
     rows = TrajectoryFloats(*(np.concatenate(arrays) for arrays in zip(*(run.si for run in runs), strict=True)))
-    begins = np.cumsum([len(run) for run in runs])[:-1]
+    ends = np.cumsum([len(run) for run in runs])
+    begins = ends[:-1]
     rows.time[begins - 1] = rows.time[begins]
     for given in (rows.work, rows.impulse, rows.angular_impulse):
-        for begin in begins:
-            given[begin:] += given[begin - 1]
+        for begin, end in pairwise(ends):
+            given[begin:end] += given[begin - 1]
     return rows
 
 

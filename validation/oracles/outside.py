@@ -18,12 +18,16 @@ from validation.oracles.taylor import REAL, Array, Start, Units, gradient, numbe
 
 
 class Distant(NamedTuple):
-    """A mass: G times it [m3/s2], its place [m] and velocity [m/s] from the barycentre at t = 0, and G times all."""
+    """A mass: G times it [m3/s2], its place [m] and velocity [m/s] from the barycentre at t = 0, and G times all.
+
+    And whether only the first term of its tide is wanted.
+    """
 
     gm: float
     x: Array
     v: Array
     whole: float
+    first_term_only: bool = False
 
 
 class Symbols(NamedTuple):
@@ -113,7 +117,9 @@ def distant_of(perturbation: ba.Sun | ba.Planet | ba.Flyby, system: ba.System) -
     whole = perturbation.gm_si + sum(body.si.gm for body in system.bodies if body.pulls)
     if isinstance(perturbation, ba.Flyby):
         return on_hyperbola(perturbation, whole)
-    return on_ellipse(perturbation.gm_si, whole, perturbation.orbit)
+    return on_ellipse(perturbation.gm_si, whole, perturbation.orbit)._replace(
+        first_term_only=perturbation.first_term_only
+    )
 
 
 class OutsideMotion:
@@ -125,12 +131,13 @@ class OutsideMotion:
         state: ba.State,
         distant: Sequence[Distant] = (),
         forces: Sequence[Force] = (),
-        *,
-        first_term_only: bool = False,
     ) -> None:
         self.system, self.units = system, Units.of(system, state)
-        self.start = Start.of(system, state, self.units)
-        self.distant, self.first_term_only = distant, first_term_only
+        start = Start.of(system, state, self.units)
+        pulling = np.array([float(body.pulls) for body in system.bodies]).astype(REAL) * start.m
+        self.origin, self.drift = (pulling @ rows / pulling.sum() for rows in (start.x, start.v))
+        self.start = start._replace(x=start.x - self.origin, v=start.v - self.drift)  # from the barycentre
+        self.distant = distant
         self.rigid = np.array([not body.is_point for body in system.bodies])
         n, k = len(system.bodies), len(distant)
         shapes = {"x": (n, 3), "v": (n, 3), "R": (n, 3, 3), "Omega": (n, 3), "s": (k, 3), "w": (k, 3)}
@@ -157,7 +164,7 @@ class OutsideMotion:
         m = numbers(self.start.m)[i]
         x, R, s = self.symbols["x"][i], self.symbols["R"][i], self.symbols["s"][mass]
         r = mutual_potentials.norm(s)
-        if self.first_term_only:
+        if self.distant[mass].first_term_only:
             tenth = hy.expression(REAL(1.0) / REAL(10.0))
             second = mutual_potentials.derivatives(s, 2)
             U = -gm * m * 0.5 * (x @ second @ x)
@@ -216,4 +223,5 @@ class OutsideMotion:
             x[i], v[i], at = y[at : at + 3], y[at + 3 : at + 6], at + 6
             if self.rigid[i]:
                 R[i], Omega[i], at = y[at : at + 9].reshape(3, 3), y[at + 9 : at + 12], at + 12
+        x, v = x + self.origin + self.drift * REAL(time / self.units.time), v + self.drift
         return taylor.floats(taylor.in_si(Snapshot(v, Omega, x, R), self.units))

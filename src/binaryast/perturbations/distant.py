@@ -384,9 +384,10 @@ class ThirdBody(Distant):
                 f"ThirdBody: its times go from {times[0]:g} s to {times[-1]:g} s of the run, which goes from "
                 f"{span.begin:g} s to {span.end:g} s: expected a table that covers it"
             )
-        axes = [PPoly.from_spline(make_interp_spline(times, axis, k=5)) for axis in self.positions.value.T]
-        real = np.diff(axes[0].x) > 0  # knots at the ends lie on each other
-        ends = np.append(axes[0].x[:-1][real], axes[0].x[-1])
+        axes = [PPoly.from_spline(make_interp_spline(times, places, k=5)) for places in self.positions.value.T]
+        knots = axes[0].x
+        real = np.diff(knots) > 0  # knots at the ends lie on each other
+        ends = np.append(knots[:-1][real], knots[-1])
         coefficients = np.stack([axis.c[:, real].T for axis in axes], axis=-1)  # piece, power, axis
         return np.concatenate([[paths.SPLINE, real.sum()], ends, coefficients.ravel()])
 

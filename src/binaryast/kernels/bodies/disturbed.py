@@ -72,11 +72,16 @@ def push(state: Array, constants: Array, external: External, h: float) -> int:
     put_places(external, state, n)
     clear(external)
     put_motion(state, constants, external, 0.0)
-    apply_forces(external, state[base + TIME])
-    put_motion(state, constants, external, 0.5 * h)
-    apply_forces(external, state[base + TIME])
-    put_motion(state, constants, external, 0.5 * h)
-    sum_up(state, base, h, power_of_all(external), force_of_all(external), torque_of_all(external))
+    power, sign = 0.0, 1.0
+    for _ in range(2):  # with the motion at the beginning, then with that at the middle of the kick
+        apply_forces(external, state[base + TIME])
+        put_motion(state, constants, external, 0.0)
+        power += sign * power_of_all(external) / 3.0
+        put_motion(state, constants, external, 0.5 * h)
+        power -= sign * power_of_all(external) / 3.0
+        sign = -1.0
+    power += power_of_all(external)
+    sum_up(state, base, h, power, force_of_all(external), torque_of_all(external))
     for i in range(n):
         body = body_constants(i)
         increase(state, velocity_of(n) + 3 * i, remainder_of(n), h / constants[body + MASS], row_at(external.F, i))
