@@ -13,11 +13,12 @@ from astropy.time import Time, TimeDelta
 from astropy.units import Quantity
 from scipy.spatial.transform import Rotation
 
-from binaryast import storage, summaries
+from binaryast import run_file, storage, summaries
 from binaryast.errors import CheckError, InputError, StepWarning
 from binaryast.impulses import AnyImpulse
 from binaryast.integrators import Integrator
 from binaryast.rotations import ROTATION_TOLERANCE
+from binaryast.run_file import pieces_of
 from binaryast.state import RelativeState, State
 from binaryast.system import System
 from binaryast.units import Floats, brief, checked, numbers, quantity
@@ -51,6 +52,12 @@ FIGURES = {  # of the whole run, over every step; with their units
     "accuracy": "",  # None where an integrator was given
     "estimated_error": "",
 }
+ROUND_OFF = 1e-12  # ||I - R^T R|| above which a state that is taken from a run has the nearest rotations
+ABOUT = ("status", "message", "steps", "step", "frame", "wall_time", "choice", *FIGURES)  # the run as a whole
+DATASETS = (  # with a row for each time
+    *("time", "position", "velocity", "attitude", "spin", "potential_energy"),
+    *("energy", "linear_momentum", "angular_momentum", "rotation_error"),
+)
 SOMETIMES = ("max_next_degree_term", "accuracy", "estimated_error")  # None of some runs, and in older files
 
 
@@ -166,7 +173,8 @@ class Trajectory(Value):
                 StepWarning,
                 stacklevel=2,
             )
-        attitude = self._rotations[index]
+        attitude = self.si.attitude[index]
+        attitude = _nearest_rotations(attitude) if error > ROUND_OFF else attitude
         return State(self.position[index], self.velocity[index], attitude, self.spin[index], epoch, self.frame)
 
     @cached_property
@@ -175,8 +183,7 @@ class Trajectory(Value):
         r = self.si.attitude
         if not np.any(_rotation_errors(r) > ROTATION_TOLERANCE):
             return r
-        matrices = r.reshape(-1, 3, 3).copy()  # SciPy below 1.15 takes no read-only array
-        return np.asarray(Rotation.from_matrix(matrices).as_matrix().reshape(r.shape))
+        return _nearest_rotations(r)
 
     def _rows(self, index: slice) -> "Trajectory":
         """Return some of the rows; the figures remain those of the whole run."""
@@ -394,34 +401,23 @@ class Trajectory(Value):
         StorageError
             Where the file exists and ``force`` is not set, or it cannot be written.
         """
-        datasets = {
-            "time": self.time,
-            "position": self.position,
-            "velocity": self.velocity,
-            "attitude": self.attitude,
-            "spin": self.spin,
-            "potential_energy": self.potential_energy,
-            "energy": self.energy,
-            "linear_momentum": self.linear_momentum,
-            "angular_momentum": self.angular_momentum,
-            "rotation_error": self.rotation_error,
-        }
-        attributes = {
-            "status": self.status,
-            "message": self.message,
-            "steps": self.steps,
-            "step": self.step.value,
-            "frame": self.frame,
-            "wall_time": self.wall_time.value,
-            "choice": self.choice,
-        }
-        figures = {name: getattr(self, name) for name in FIGURES}
-        attributes |= {name: getattr(figure, "value", figure) for name, figure in figures.items() if figure is not None}
+        pieces = (self._rows(slice(*piece)).datasets() for piece in pieces_of(len(self)))
+        return storage.write(storage.as_path(path), self.content(), len(self), pieces, force=force)
+
+    def datasets(self) -> dict[str, Any]:
+        """Return what a file has a row of for each time, by name."""
+        return {name: getattr(self, name) for name in DATASETS}
+
+    def attributes(self) -> dict[str, Any]:
+        """Return what is said of the run as a whole, in SI, by name."""
+        figures = {name: getattr(self, name) for name in ABOUT}
+        return {name: getattr(figure, "value", figure) for name, figure in figures.items() if figure is not None}
+
+    def content(self) -> storage.Content:
+        """Return what a file holds beside `datasets`."""
         values = {"system": self.system, "integrator": self.integrator, "epoch": self.epoch}
         values |= {"impulses": self.impulses} if self.impulses else {}
-        return storage.write(
-            storage.as_path(path), storage.Content(datasets, attributes, values, self.provenance), force=force
-        )
+        return storage.Content({}, self.attributes(), values, self.provenance)
 
     @classmethod
     def read(cls, path: str | Path, *, verify: bool = True) -> "Trajectory":
@@ -444,32 +440,40 @@ class Trajectory(Value):
             Where the file is missing, broken, or not one of ours.
         """
         path = storage.as_path(path)
-        content = storage.read(path, verify=verify)
-        attributes: dict[str, Any] = dict.fromkeys(SOMETIMES) | {"choice": ""} | content.attributes
+        content = run_file.with_rows(path, storage.read(path, verify=verify), verify=verify)
         try:
-            return cls(
-                system=content.values["system"],
-                integrator=content.values["integrator"],
-                si=_floats(content.datasets, len(content.values["system"].bodies)),
-                epoch=content.values.get("epoch"),
-                frame=str(attributes["frame"]),
-                status=str(attributes["status"]),
-                message=str(attributes["message"]),
-                steps=int(attributes["steps"]),
-                step=quantity(float(attributes["step"]), "s"),
-                wall_time=quantity(float(attributes["wall_time"]), "s"),
-                provenance=content.provenance,
-                choice=str(attributes["choice"]),
-                impulses=content.values.get("impulses", ()),
-                **{
-                    name: quantity(attributes[name], unit) if unit else attributes[name]
-                    for name, unit in FIGURES.items()
-                },
-            )
+            return cls.of_content(content)
         except KeyError as error:
             raise storage.broken(path, f"{error.args[0]} is missing") from None
         except Exception as error:  # a file that was changed can hold anything
             raise storage.broken(path, brief(error)) from None
+
+    @classmethod
+    def of_content(cls, content: storage.Content) -> "Trajectory":
+        """Return the run that the content of a file tells of; it raises whatever comes to what is none."""
+        attributes: dict[str, Any] = dict.fromkeys(SOMETIMES) | {"choice": ""} | content.attributes
+        return cls(
+            system=content.values["system"],
+            integrator=content.values["integrator"],
+            si=_floats(content.datasets, len(content.values["system"].bodies)),
+            epoch=content.values.get("epoch"),
+            frame=str(attributes["frame"]),
+            status=str(attributes["status"]),
+            message=str(attributes["message"]),
+            steps=int(attributes["steps"]),
+            step=quantity(float(attributes["step"]), "s"),
+            wall_time=quantity(float(attributes["wall_time"]), "s"),
+            provenance=content.provenance,
+            choice=str(attributes["choice"]),
+            impulses=content.values.get("impulses", ()),
+            **{name: quantity(attributes[name], unit) if unit else attributes[name] for name, unit in FIGURES.items()},
+        )
+
+
+def _nearest_rotations(r: Floats) -> Floats:
+    """Return the rotations nearest to matrices (..., 3, 3)."""
+    matrices = r.reshape(-1, 3, 3).copy()  # SciPy below 1.15 takes no read-only array
+    return np.asarray(Rotation.from_matrix(matrices).as_matrix().reshape(r.shape))
 
 
 def _rotation_errors(r: Floats) -> Floats:
@@ -489,4 +493,9 @@ def _floats(datasets: dict[str, Any], count: int) -> TrajectoryFloats:
         "potential_energy": (rows,),
     }
     arrays = {name: np.asarray(datasets[name], dtype=np.float64) for name in shapes}
-    return TrajectoryFloats(*(checked(arrays[name], name, shape) for name, shape in shapes.items()))
+    for name, shape in shapes.items():
+        if arrays[name].shape != shape:
+            checked(arrays[name], name, shape)
+        for begin, end in pieces_of(rows):
+            checked(arrays[name][begin:end], name, (end - begin, *shape[1:]))
+    return TrajectoryFloats(**arrays)
