@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from binaryast.polyhedron_pair import PolyhedronPair
     from binaryast.polyhedron_point import PolyhedronPoint
     from binaryast.propagation import propagate
+    from binaryast.resuming import resume
     from binaryast.shapes import Dumbbell, Ellipsoid, Point, PointCloud, Shape, Sphere
     from binaryast.state import RelativeState, State
     from binaryast.surfaces import Surface, surface
@@ -85,6 +86,7 @@ _HOMES = {
     "pair_potential": "gravity",
     "polyhedron_field": "fields",
     "propagate": "propagation",
+    "resume": "resuming",
     "surface": "surfaces",
 }
 _MODULES = ("analysis", "catalogue", "constants", "equations", "errors", "plotting", "scenario")
@@ -139,6 +141,7 @@ __all__ = [
     "plotting",
     "polyhedron_field",
     "propagate",
+    "resume",
     "scenario",
     "surface",
 ]
