@@ -311,7 +311,7 @@ def _room(shape: tuple[int, ...]) -> Floats:
 
 
 def _lock(file: BinaryIO, path: Path) -> None:
-    """Keep other processes from writing to the same file, where the system can; HDF5's own locks are of another kind."""
+    """Keep other processes from writing to the same file, where the system can; not by HDF5's kind of lock."""
     try:
         import fcntl
     except ImportError:

@@ -421,6 +421,12 @@ def _stored(dataset: h5py.Dataset) -> Any:
     return np.memmap(dataset.file.filename, dataset.dtype, "r", dataset.id.get_offset(), dataset.shape)
 
 
+def stored(path: Path, names: Iterable[str]) -> dict[str, Any]:
+    """Return datasets of a file that was just written, as they are in it."""
+    with h5py.File(path, "r") as file:
+        return {name: _stored(file[name]) for name in names}
+
+
 def _plain(value: Any) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 

@@ -193,7 +193,9 @@ class Stream(Memory):
                 f"{error}: all rows are there: make room, and have the file completed: binaryast resume {path}"
             ) from None
         remove(self.before or set_aside(path))
-        return replace(whole, si=si if si is not None else Trajectory.read(path, verify=False).si)
+        if si is None:
+            si = TrajectoryFloats(**storage.stored(path, self.file.layout.names))
+        return replace(whole, si=si)
 
     def _pieces(self, whole: Trajectory, rows: int) -> Iterator[dict[str, Any]]:
         """Yield what the final file has a row of for each time, in pieces; then the run file is closed."""

@@ -22,6 +22,7 @@ from validation.cases import (
     polyhedron_point,
     small_perturbation,
     sphere_ellipsoid,
+    survival,
     synchronous,
     triple,
     two_rods,
@@ -51,4 +52,5 @@ ALL: tuple[Case, ...] = (
     libration.CASE,
     gravity_gradient.CASE,
     oblateness.CASE,
+    survival.CASE,
 )
