@@ -72,7 +72,7 @@ def same(one: ba.Trajectory, other: ba.Trajectory) -> None:
     assert figures == others
 
 
-@pytest.mark.parametrize("marks", [0, 1, 3])
+@pytest.mark.parametrize("marks", [0, 3])
 @pytest.mark.parametrize("name", METHODS)
 def test_a_run_goes_on_bit_for_bit(name: str, marks: int, stopping, tmp_path: Path) -> None:
     """With impulses, one at the start; stopped twice, and the last part of the file torn off."""
@@ -101,7 +101,7 @@ def test_a_run_goes_on_bit_for_bit(name: str, marks: int, stopping, tmp_path: Pa
 
 def test_several_bodies_go_on_bit_for_bit(stopping, tmp_path: Path) -> None:
     system, state = ba.catalogue.load("sn263")
-    arguments = {"duration": 20 * u.day, "accuracy": 1e-8}
+    arguments = {"duration": 20 * u.day, "accuracy": 1e-5}
     stopping(5)
     with pytest.raises(Stopped):
         ba.propagate(system, state, **arguments, file=tmp_path / "run.h5")
@@ -124,17 +124,19 @@ def test_a_file_brings_back_every_bit_of_a_system(name: str) -> None:
 
 def test_it_survives_being_killed(tmp_path: Path) -> None:
     """Three times at random moments; python -m validation --long has twenty."""
-    kick = "ba.Impulse(700.1 * u.day, [0, 0, -2] * u.mm / u.s, 1)"
-    how = f"duration=2000 * u.day, save_every=2 * u.day, integrator=ba.LGVI(40 * u.s), impulses=[{kick}]"
+    kick = "ba.Impulse(350.1 * u.day, [0, 0, -2] * u.mm / u.s, 1)"
+    how = f"duration=1000 * u.day, save_every=1 * u.day, integrator=ba.LGVI(40 * u.s), impulses=[{kick}]"
     expected = tmp_path / "whole.h5"
     lasts = killing.whole(expected, "didymos", how)
-    random = Random(10)
-    for k in range(3):
-        path = tmp_path / f"{k}.h5"
-        assert killing.killed(path, "didymos", how, random.uniform(0.1, 0.9) * lasts)
+    random, path, kills = Random(10), tmp_path / "killed.h5", 0
+    while kills < 3:
+        if not killing.killed(path, "didymos", how, random.uniform(0.05, 0.9) * lasts):
+            continue  # it was over already: processes do not take the same time twice
+        kills += 1
         assert ba.Trajectory.read(path).status == "interrupted"
         ba.resume(path)
         assert killing.differences(expected, path) == []
+        path.unlink()
 
 
 def test_a_file_is_there_from_the_first_step_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -188,7 +190,7 @@ def test_garbled_and_torn_files(stopping, tmp_path: Path) -> None:
     header = storage.end_of_header(path)
     assert header is not None
     random = Random(3)
-    for at in [random.randrange(len(data)) for _ in range(30)] + [header, header + 9, len(data) - 1]:
+    for at in [random.randrange(len(data)) for _ in range(12)] + [header, header + 9, len(data) - 1]:
         path.write_bytes(data[:at] + bytes([data[at] ^ 0x41]) + data[at + 1 :])
         try:
             rows = ba.Trajectory.read(path)
@@ -205,7 +207,7 @@ def test_garbled_and_torn_files(stopping, tmp_path: Path) -> None:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ResumeWarning)
             same(ba.resume(path), expected)
-    for size in [random.randrange(header, len(data)) for _ in range(10)] + [header]:
+    for size in [random.randrange(header, len(data)) for _ in range(4)] + [header]:
         path.write_bytes(data[:size])
         rows = ba.Trajectory.read(path)
         np.testing.assert_array_equal(rows.si.position, expected.si.position[: len(rows)])
@@ -283,6 +285,35 @@ def test_a_function_of_ones_own_is_given_again(stopping, tmp_path: Path) -> None
     with pytest.raises(InputError, match=r"is a function that the file could not keep: give the system again"):
         ba.resume(path)
     same(ba.resume(path, system=system), ba.propagate(system, DIDYMOS[1], **arguments))
+
+
+def test_marks_that_this_version_does_not_know(stopping, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "run.h5"
+    stopped_run(path, stopping)
+    monkeypatch.setattr("binaryast.stepping.CHECKPOINT", ("something else",))
+    with pytest.raises(StorageError, match=r"this version does not know the marks of binaryast .*: install that one"):
+        ba.resume(path)
+
+
+def test_a_file_that_may_not_be_changed(stopping, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "run.h5"
+    stopped_run(path, stopping)
+    data = path.read_bytes()
+    with pytest.raises(StorageError, match="it is a run that was stopped: go on with binaryast resume"):
+        ba.propagate(*DIDYMOS, duration=1 * u.day, accuracy=1e-8, file=path)
+
+    def refuse(*_, **__) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    with monkeypatch.context() as patch:
+        patch.setattr("binaryast.storage.tempfile.TemporaryFile", refuse)
+        with pytest.raises(StorageError, match=r"nothing can be written in .*denied"):
+            ba.resume(path)
+    with monkeypatch.context() as patch:
+        patch.setattr("binaryast.run_file.RunFile", refuse)
+        with pytest.raises(StorageError, match=r"cannot be opened to go on with: .*denied"):
+            ba.resume(path)
+    assert path.read_bytes() == data
 
 
 def test_ctrl_c_and_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import h5py
 
+from binaryast import storage
+
 BEGIN = """
 import sys, warnings
 import astropy.units as u
@@ -42,14 +44,17 @@ def whole(path: Path, name: str, how: str) -> float:
 
 
 def killed(path: Path, name: str, how: str, after: float) -> bool:
-    """Have a run killed after a time [s]; whether that came before its end."""
+    """Have a run killed after a time [s]; whether that came before its end, and its file says so."""
     running = process(path, RUN.format(name=name, how=how))
     assert running.stdout is not None
     running.stdout.readline()
     time.sleep(after)
     running.kill()
     running.communicate()
-    return running.returncode != 0
+    under_way = path.exists() and storage.end_of_header(path) is not None
+    if not under_way:
+        path.unlink(missing_ok=True)
+    return under_way
 
 
 def resumed(path: Path) -> None:
@@ -67,8 +72,15 @@ def finish(running: "subprocess.Popen[str]") -> None:
 def differences(one: Path, other: Path) -> list[str]:
     """Return in which datasets two files differ in any bit, and in which attributes beside the wall time."""
     with h5py.File(one) as a, h5py.File(other) as b:
-        names = sorted(set(a) ^ set(b))
-        both = [name for name in a if name in b and isinstance(a[name], h5py.Dataset)]
-        names += [name for name in both if a[name][()].tobytes() != b[name][()].tobytes()]
+        datasets = [_datasets(file) for file in (a, b)]
+        names = sorted(set(datasets[0]) ^ set(datasets[1]))
+        names += [name for name in datasets[0] if datasets[0][name] != datasets[1].get(name)]
         attributes = (set(a.attrs) | set(b.attrs)) - {"wall_time"}
         return names + sorted(name for name in attributes if a.attrs.get(name) != b.attrs.get(name))
+
+
+def _datasets(file: h5py.File) -> dict[str, bytes]:
+    """Return the bytes of all datasets, in groups too."""
+    found: dict[str, bytes] = {}
+    file.visititems(lambda name, item: found.update({name: item[()].tobytes()} if hasattr(item, "shape") else {}))
+    return found

@@ -2,9 +2,10 @@
 
 import warnings
 from dataclasses import replace
+from importlib.metadata import version
 from pathlib import Path
 
-from binaryast import run_file
+from binaryast import run_file, storage
 from binaryast.errors import InputError, ResumeWarning
 from binaryast.gravity import PairPotential
 from binaryast.propagation import Inputs, follow, provenance
@@ -60,6 +61,7 @@ def resume(path: str | Path, *, system: System | None = None, progress: bool = F
     path = as_path(path)
     with run_file.opened(path) as file:
         _compare_versions(file)
+        storage.remove_parts(path)
         if file.damaged:
             text = f"{path} is damaged after {file.end} bytes: what follows is computed again"
             warnings.warn(text, ResumeWarning, stacklevel=2)
@@ -71,6 +73,8 @@ def resume(path: str | Path, *, system: System | None = None, progress: bool = F
 def _compare_versions(file: RunFile) -> None:
     """Warn where what decides about the last bits is not what it was."""
     before, now = file.content.provenance, provenance()
+    if "heyoka" in before:
+        now["heyoka"] = version("heyoka")
     for name in DECIDE_BITS:
         if name in before and name in now and before[name] != now[name]:
             text = f"{file.path} was begun with {name} {before[name]}, this is {now[name]}: it is the same to round-off"

@@ -281,6 +281,8 @@ def _said(path: Path) -> Iterator[None]:
         yield
     except StorageError:
         raise
+    except OSError as error:
+        raise StorageError(f"{path}: cannot be opened to go on with: {storage.reason(error)}") from None
     except Exception as error:  # a file that was made by somebody else can hold anything
         raise storage.broken(path, f"its blocks are not those of a run ({type(error).__name__})") from None
 
@@ -299,6 +301,7 @@ def opened(path: Path) -> RunFile:
             f"{path}: the run is over ({content.attributes.get('status')}): to follow the motion further, "
             f"binaryast run {path} --duration TIME"
         )
+    storage.refuse(path, force=True)
     with _said(path):
         return RunFile(path, content, writing=True)
 

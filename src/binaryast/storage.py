@@ -7,6 +7,7 @@ piece so that no more than a piece is in memory, and appears under its own in on
 
 import contextlib
 import errno
+import glob
 import hashlib
 import inspect
 import io
@@ -92,8 +93,10 @@ def refuse(path: Path, *, force: bool) -> None:
         if path.is_dir():
             raise StorageError(f"{path} is a folder: give the name of a file")
         if path.exists() and not force:
+            stopped = path.is_file() and _first_words(path)[:2] == ["binaryast", "run"]
+            on = f"; it is a run that was stopped: go on with binaryast resume {path}" if stopped else ""
             raise StorageError(
-                f"{path} exists already: choose another name, or allow it to be replaced (--force, force=True)"
+                f"{path} exists already: choose another name, or allow it to be replaced (--force, force=True){on}"
             )
         if not path.parent.is_dir():
             raise StorageError(f"{path}: there is no folder {path.parent}: make it first")
@@ -132,6 +135,12 @@ def appearing(path: Path, *, force: bool) -> Iterator[Path]:
     finally:
         if temporary is not None:
             temporary.unlink(missing_ok=True)
+
+
+def remove_parts(path: Path) -> None:
+    """Remove what processes that were killed left of files that were to appear under a name."""
+    for part in path.parent.glob(f".{glob.escape(path.name)}.*.part"):
+        part.unlink(missing_ok=True)
 
 
 def replace_whole(path: Path, data: bytes, *, force: bool) -> Path:

@@ -117,7 +117,7 @@ class Stream(Memory):
     def go(self, run: Run, show: Callable[[float], None]) -> Outcome:
         """Have a run followed as far as it goes, on from the last mark of its leg where there is one."""
         if self.known and self.known[-1].mark is not None and self.known[-1].over is None:
-            run.restore(self.file.said(self.known[-1].mark)["run"])
+            self._restore(run, self.file.said(self.known[-1].mark)["run"])
         self.known = []
 
         def look(elapsed: float) -> None:
@@ -130,6 +130,17 @@ class Stream(Memory):
         if outcome.status == "completed":
             self._mark(run)
         return outcome
+
+    def _restore(self, run: Run, checkpoint: dict[str, Any]) -> None:
+        """Have a run go on from a mark, where it is one of this version."""
+        try:
+            run.restore(checkpoint)
+        except (KeyError, ValueError):
+            raise StorageError(
+                f"{self.file.path}: this version does not know the marks of binaryast "
+                f"{self.file.content.provenance.get('binaryast')}: install that one, or go on from the last row: "
+                f"binaryast run {self.file.path} --duration TIME"
+            ) from None
 
     def _look(self, run: Run) -> None:
         """Write rows where there are many, or some time has gone by; then also a mark."""

@@ -40,11 +40,11 @@ def differing(folder: Path, effort: Effort) -> int:
     lasts = killing.whole(expected, "didymos", how)
     path = folder / "killed.h5"
     while k < KILLS[effort]:
-        if killing.killed(path, "didymos", how, random.uniform(0.02, 0.98) * lasts) and path.exists():
+        if killing.killed(path, "didymos", how, random.uniform(0.02, 0.98) * lasts):
             killing.resumed(path)
             bad += bool(killing.differences(expected, path))
+            path.unlink()
             k += 1
-        path.unlink(missing_ok=True)  # else it was over already, or had not begun
     return bad
 
 
