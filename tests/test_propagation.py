@@ -8,7 +8,9 @@ import pytest
 
 import binaryast as ba
 from binaryast.errors import ContactError, EndWarning, GravityWarning, InputError, StepError, StepWarning
+from binaryast.kernels import loop, status
 from binaryast.schedule import Leg, schedule
+from binaryast.stepping import LEVELS, PARTS, SteppedRun
 
 
 @pytest.mark.parametrize(
@@ -278,3 +280,22 @@ def test_progress_is_shown_on_standard_error(
     captured = capfd.readouterr()
     assert captured.out == ""
     assert "10/10 d simulated" in captured.err
+
+
+def test_a_closer_look_saves_no_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where parts of parts of a step do not touch after all, rows would be written where there is no room for them."""
+    run = SteppedRun(*falling(), ba.LGVI(5 * u.s), schedule(Leg.of_run(100.0), 5.0))
+    seen, longer = [], 5.0 / PARTS**3 * 1.5
+
+    def call(self, step, count, stride, rows, watch, surfaces) -> int:
+        first_of_longer = step > longer and not seen.count(step)
+        seen.append(step)
+        if first_of_longer:
+            return status.CONTACT
+        watch[loop.STEPS] += count
+        assert watch[loop.STEPS] < 0
+        return status.COMPLETED
+
+    monkeypatch.setattr(SteppedRun, "_call", call)
+    assert run._by_parts(5.0, LEVELS, run.watch.array.copy()) is None
+    assert len(seen) == 3 * PARTS

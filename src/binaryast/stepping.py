@@ -198,8 +198,8 @@ class SteppedRun:
     def _by_parts(self, step: float, levels: int, watch: Floats) -> float | None:
         """Follow a step in parts; return after what time bodies touch or it goes wrong, None where they do not."""
         w, part, no_rows = self.working, step / PARTS, np.empty((0, self.working.row_size))
-        watch[loop.STEPS] = -2.0 * PARTS  # never a multiple of a stride that long
         for k in range(PARTS):
+            watch[loop.STEPS] = -4.0  # no multiple of a stride that long, nor are the next: there is no room for rows
             self.code = self._call(part, 1, 10**9, no_rows, watch, w.surfaces)
             if self.code < status.CONTACT and self.code != status.COMPLETED:
                 return k * part
