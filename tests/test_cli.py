@@ -343,7 +343,7 @@ def test_ctrl_c_keeps_what_was_computed(folder: Path) -> None:
         process.kill()
     assert process.returncode == cli.INTERRUPTED
     assert "interrupted" in out
-    assert "Go on with: binaryast run didymos.h5 --duration" in err
+    assert "Go on with: binaryast resume didymos.h5" in err
     assert "Traceback" not in err
     run = ba.Trajectory.read(folder / "didymos.h5")
     assert run.status == "interrupted"

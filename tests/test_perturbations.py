@@ -220,14 +220,16 @@ def swing(p: Any, t: float, position: Any, attitude: Any, force: Any, torque: An
 
 
 @pytest.mark.parametrize("frame", ["relative", "inertial"])
-def test_no_friction_is_no_difference_in_any_bit(frame: str) -> None:
+def test_no_friction_is_no_difference(frame: str) -> None:
+    """In no bit, but for sums that are rounded once where the compiler fuses them, which depends on what it sees."""
     nothing = [ba.TidalTorque("Didymos", "Dimorphos", 0.0, quality_factor=10), ba.Force(drag, [0.0, 0.0])]
     one, two = (
         ba.propagate(*didymos(*some), duration=1 * u.day, integrator=ba.LGVI(60 * u.s, frame=frame))
         for some in ([], nothing)
     )
     for name in ("position", "velocity", "attitude", "spin", "potential_energy"):
-        np.testing.assert_array_equal(getattr(one.si, name), getattr(two.si, name))
+        size = np.abs(getattr(one.si, name)).max()
+        np.testing.assert_allclose(getattr(one.si, name), getattr(two.si, name), rtol=0, atol=1e-14 * size)
 
 
 def test_friction_and_a_potential_that_swings_are_balanced_to_the_methods_order() -> None:

@@ -108,7 +108,8 @@ def test_where_nothing_moves_the_barycentre_does_not() -> None:
 
 
 @pytest.mark.parametrize("name", [name for name in STEPS if name != "KeplerSplitting"])
-def test_forces_without_size_change_no_bit(tumbling: tuple[ba.System, ba.State], name: str) -> None:
+def test_forces_without_size_change_nothing(tumbling: tuple[ba.System, ba.State], name: str) -> None:
+    """No bit, but for sums that are rounded once where the compiler fuses them, which depends on what it sees."""
     given, state = tumbling
     nothing = (
         ba.TidalTorque("A", raised_by="B", love_number=0, quality_factor=10),
@@ -121,7 +122,9 @@ def test_forces_without_size_change_no_bit(tumbling: tuple[ba.System, ba.State],
         ba.propagate(system, state, duration=6 * u.h, integrator=STEPS[name])
         for system in (given, *(with_forces(given, one) for one in nothing), with_forces(given, *nothing))
     ]
-    assert all(same(run, runs[0]) for run in runs[1:])
+    for run in runs[1:]:
+        for one, other in zip(run.si, runs[0].si, strict=True):
+            np.testing.assert_allclose(one, other, rtol=0, atol=1e-13 * np.abs(other).max())
 
 
 def test_kepler_splitting_without_forces_is_the_same_to_round_off(tumbling: tuple[ba.System, ba.State]) -> None:

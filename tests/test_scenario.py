@@ -133,6 +133,84 @@ def test_one_line_for_each_mistake(text: str, says: str) -> None:
     assert "\n" not in str(caught.value)
 
 
+MANY = """
+title = 7
+[[bodies]]
+name = "A"
+shape = { type = "Ellipsoid", a = "400 kg", b = "390", c = "300 m" }
+density = 2000
+
+[[bodies]]
+name = "B"
+shape = { type = "Sphere", radus = "60 m" }
+mas = "2e9 kg"
+
+[gravity]
+type = "Multipol"
+
+[state]
+type = "circular_orbit"
+separation = "1.2 h"   # a time
+spin = ["3 h",
+    "synchronous"]
+
+[run]
+step = "-60 s"
+save_every = "10 min"
+accuracy = true
+
+[[impulses]]
+type = "Impulse"
+time = "1 h"
+delta_v = "[0, -2.6, 0]"
+
+[[sources]]
+source = "none"
+"""
+
+
+def test_all_mistakes_are_listed_with_their_lines() -> None:
+    with pytest.raises(ScenarioError) as caught:
+        loads(MANY, name="mine", where="mine.toml")
+    text = str(caught.value)
+    assert text.startswith("mine.toml: 13 mistakes: ")
+    assert "\n" not in text
+    found = [part.split(": ")[:2] for part in text.removeprefix("mine.toml: 13 mistakes: ").split(" | ")]
+    assert found == [
+        ["line 2", "title"],
+        ["line 5", "bodies[0].shape.b"],
+        ["line 6", "bodies[0].density"],
+        ["line 10", "bodies[1].shape.radus"],
+        ["line 11", "bodies[1].mas"],
+        ["line 14", "gravity.type"],
+        ["line 19", "state.spin"],
+        ["line 22", "run.duration is missing"],
+        ["line 23", "run.step"],
+        ["line 25", "run.accuracy"],
+        ["line 27", "impulses[0].body is missing"],
+        ["line 30", "impulses[0].delta_v"],
+        ["line 32", "sources[0].what is missing"],
+    ]
+
+
+def test_one_mistake_has_its_line_too() -> None:
+    with pytest.raises(ScenarioError, match=r"^mine\.toml: line \d+: bodies\[0\]\.gn: unknown key"):
+        loads(changed('gm = "34', 'gn = "34'), name="mine", where="mine.toml")
+
+
+@pytest.mark.parametrize(
+    ("version", "says"),
+    [("1", None), ("2", "expected 1 to 1, got 2: a newer binaryast wrote it"), ("0", "whole number"), ('"1"', "whole")],
+)
+def test_the_version_of_the_format_is_checked(version: str, says: str | None) -> None:
+    text = f"format_version = {version}\n{PLAIN}"
+    if says is None:
+        assert loads(text, name="mine", where="mine.toml").duration == 60 * u.day
+        return
+    with pytest.raises(ScenarioError, match=rf"line 1: format_version: .*{says}"):
+        loads(text, name="mine", where="mine.toml")
+
+
 def test_files_that_are_not_there_or_not_text(tmp_path: Path) -> None:
     with pytest.raises(StorageError, match="no such file"):
         load(tmp_path / "none.toml")

@@ -36,7 +36,8 @@ class Check:
     roundoff : bool
         Whether the error is round-off, whose digits differ from machine to machine.
     printed : bool
-        Whether the tolerance is what the oracle's printed digits leave, so that the error may be far below it.
+        Whether the tolerance is what the oracle's printed digits leave, so that the error may be far below it; also of
+        a count, which is a whole number.
     """
 
     what: str

@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from binaryast.polyhedron_pair import PolyhedronPair
     from binaryast.polyhedron_point import PolyhedronPoint
     from binaryast.propagation import propagate
+    from binaryast.resuming import resume
     from binaryast.retracing import retrace
     from binaryast.shapes import Dumbbell, Ellipsoid, Point, PointCloud, Shape, Sphere
     from binaryast.state import RelativeState, State
@@ -114,6 +115,7 @@ _HOMES = {
     "pair_potential": "gravity",
     "polyhedron_field": "fields",
     "propagate": "propagation",
+    "resume": "resuming",
     "retrace": "retracing",
     "surface": "surfaces",
 }
@@ -183,6 +185,7 @@ __all__ = [
     "plotting",
     "polyhedron_field",
     "propagate",
+    "resume",
     "retrace",
     "scenario",
     "surface",

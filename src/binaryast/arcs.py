@@ -1,6 +1,7 @@
 """What happens on the arc of a long step: contact, events, the closest approach, for solvers that know their arcs."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import combinations
 from typing import NamedTuple
@@ -10,8 +11,9 @@ import numpy as np
 from binaryast.events import Event
 from binaryast.kernels.clearance import least_clearance
 from binaryast.kernels.contact import HEADER, RADIUS
+from binaryast.kernels.loop import CLOSEST
 from binaryast.locating import Root, findings, resolve, within
-from binaryast.outcome import Happening
+from binaryast.outcome import Happening, Watch
 from binaryast.units import Floats
 from binaryast.watchlist import Places, Watchlist
 
@@ -81,6 +83,23 @@ class ArcLookout:
         self.radii = self.surfaces[: HEADER * count].reshape(count, HEADER)[:, RADIUS]
         self.happened: list[Happening] = []
         self.closest, self.closest_time = np.inf, 0.0
+
+    def checkpoint(self) -> dict[str, float]:
+        """Return what has been found beside what happened."""
+        return {"closest": self.closest, "closest_time": self.closest_time}
+
+    def restore(self, checkpoint: dict[str, float], happened: Sequence[Happening]) -> None:
+        """Go on from a checkpoint."""
+        self.closest, self.closest_time = checkpoint["closest"], checkpoint["closest_time"]
+        self.happened = list(happened)
+
+    def with_closest(self, watch: Watch, closest_time: float) -> tuple[Watch, float]:
+        """Return what was watched at ends of steps, and when the bodies were closest, with what lies within arcs."""
+        if not self.closest < watch.array[CLOSEST]:
+            return watch, closest_time
+        array = watch.array.copy()
+        array[CLOSEST] = self.closest
+        return replace(watch, array=array), self.closest_time
 
     def look(self, variables: Floats) -> Places:
         """Look where the bodies are."""

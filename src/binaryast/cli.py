@@ -1,4 +1,4 @@
-"""The command line: ``binaryast list | show | run | plot | completion``.
+"""The command line: ``binaryast list | show | run | resume | plot | completion``.
 
 Results go to standard output, everything else to standard error; an error is one line and an exit status that is not 0:
 1 for a run that failed, 2 for wrong input, 130 for Ctrl-C.
@@ -11,7 +11,7 @@ import os
 import re
 import sys
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from binaryast.bodies import RigidBody
     from binaryast.impulses import AnyImpulse
     from binaryast.occurrences import Occurrence
-    from binaryast.state import State
     from binaryast.system import System
     from binaryast.trajectory import Trajectory
 
@@ -123,6 +122,13 @@ def parser() -> argparse.ArgumentParser:
     running.add_argument("--force", action="store_true", help="replace files that exist")
     running.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
     running.set_defaults(command=_run)
+
+    resuming = commands.add_parser("resume", help="go on with a run that was stopped, to the end it was to have")
+    _file(resuming.add_argument("file", metavar="FILE.h5", help="its file"))
+    resuming.add_argument("--no-picture", action="store_true", help="write no picture beside the file")
+    resuming.add_argument("--force", action="store_true", help="replace a picture that exists")
+    resuming.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+    resuming.set_defaults(command=_resume)
 
     plotting = commands.add_parser("plot", help="draw a run")
     _file(plotting.add_argument("file", metavar="FILE.h5", help="a run"))
@@ -246,21 +252,40 @@ def _run(options: argparse.Namespace) -> int:
     if output.suffix.lower() != RUN:
         raise InputError(f"--output: {output}: the file of a run is HDF5: give a name that ends in .h5")
     system, state, how, duration, save_every = start(options)
-    run = _propagate(system, state, how, duration, save_every, progress=not options.json)
-    run.write(output, force=options.force)
+    from binaryast.propagation import propagate
+
+    file = {"file": output, "force": options.force}
+    run = _early_ends_reported(
+        lambda progress: propagate(
+            system, state, duration=duration, save_every=save_every, progress=progress, **how, **file
+        ),
+        options,
+    )
+    return _ended(run, output, picture, options)
+
+
+def _resume(options: argparse.Namespace) -> int:
+    from binaryast import storage
+    from binaryast.resuming import resume
+
+    output = storage.as_path(options.file)
+    picture = None if options.no_picture else Path(output.parent, f"{output.stem}.png")
+    if picture is not None:
+        storage.refuse(picture, force=options.force)
+    run = _early_ends_reported(lambda progress: resume(output, progress=progress), options)
+    return _ended(run, output, picture, options)
+
+
+def _ended(run: "Trajectory", output: Path, picture: Path | None, options: argparse.Namespace) -> int:
+    """Draw and report a run that is safely in its file; return the exit status."""
     code = 0 if picture is None else _draw(run, picture, output, force=options.force)
     _report(run, output, None if code else picture, as_json=options.json)
     if run.status == "failed":
         print(f"binaryast: error: {run.message}; what was computed is in {output}", file=sys.stderr)
         return FAILED
     if run.status == "interrupted":
-        left = duration.to_value("s") - run.si.time[-1]
-        print(
-            f"binaryast: stopped by Ctrl-C; what was computed is in {output}. "
-            f"Go on with: binaryast run {output} --duration {left:.9g}s"
-            + (f" --save-every {options.save_every}" if options.save_every else ""),
-            file=sys.stderr,
-        )
+        text = f"binaryast: stopped by Ctrl-C; what was computed is in {output}. Go on with: binaryast resume {output}"
+        print(text, file=sys.stderr)
         return INTERRUPTED
     return code
 
@@ -282,16 +307,13 @@ def _draw(run: "Trajectory", picture: Path, output: Path, *, force: bool) -> int
     return 0
 
 
-def _propagate(
-    system: "System", state: "State", how: dict[str, Any], duration: Any, save_every: Any, *, progress: bool
-) -> "Trajectory":
-    """Run; what ends a run early is in the report, so it needs no warning."""
+def _early_ends_reported(go: "Callable[[bool], Trajectory]", options: argparse.Namespace) -> "Trajectory":
+    """Run, with a bar unless told otherwise; what ends a run early is in the report, so it needs no warning."""
     from binaryast.errors import EndWarning
-    from binaryast.propagation import propagate
 
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", EndWarning)
-        return propagate(system, state, duration=duration, save_every=save_every, progress=progress, **how)
+        return go(not options.json)
 
 
 def _periods(run: "Trajectory") -> dict[str, float]:

@@ -6,7 +6,6 @@ import numpy as np
 
 from binaryast.kernels import loop
 from binaryast.locating import within
-from binaryast.schedule import Segment
 from binaryast.stepping import SteppedRun
 from binaryast.units import Floats
 
@@ -20,10 +19,13 @@ def refine(run: SteppedRun) -> None:
 
     The motion is followed again to there from the saved row before; this is aside from the run.
     """
-    place = _place(run)
-    if place is None or place[0].stride > MOST_STEPS or len(run.system.pairs) > MOST_PAIRS:
+    place = run.place_of_closest()
+    if place is None or place.segment.stride > MOST_STEPS or len(run.system.pairs) > MOST_PAIRS:
         return
-    segment, begin, steps, row = place
+    segment, begin, steps = place
+    row = run.row_before(place)
+    if row is None:
+        return
     w = run.working
     kept = w.state.copy()
     before = max(0, steps - 1)
@@ -37,20 +39,6 @@ def refine(run: SteppedRun) -> None:
         run.looker.look(origin, segment.step)
         origin = run.looker.scratch.copy()
     w.state[:] = kept
-
-
-def _place(run: SteppedRun) -> tuple[Segment, float, int, Floats] | None:
-    """Return the segment of the closest approach, when it began, after how many steps it was, and a row before."""
-    begin = 0.0
-    times, rows = np.concatenate(run.times), np.concatenate(run.rows)
-    for segment in run.segments:
-        steps = round((run.closest_time - begin) / segment.step)
-        if steps <= segment.steps and run.steps:
-            back = max(0, steps - 1) // segment.stride * segment.stride
-            row = int(np.argmin(np.abs(times - begin - back * segment.step)))
-            return segment, begin, steps, rows[row]
-        begin += segment.steps * segment.step
-    return None
 
 
 def _approaches(run: SteppedRun, origin: Floats, length: float) -> Iterator[tuple[float, float]]:

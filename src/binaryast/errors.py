@@ -72,6 +72,10 @@ class EndWarning(BinaryastWarning):
     """A run that ended before its time."""
 
 
+class ResumeWarning(BinaryastWarning):
+    """A run that goes on, but not bit for bit, or from further back than it had come."""
+
+
 def did_you_mean(word: str, words: Iterable[str]) -> str:
     """Return a question that names the nearest of the words that are known, nothing if none is near."""
     near = difflib.get_close_matches(word, list(words), n=1, cutoff=0.5)

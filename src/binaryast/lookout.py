@@ -112,16 +112,30 @@ class Lookout:
 
     def start(self, segment: Segment, elapsed: float, watch: Floats) -> None:
         """Begin a segment, at the state of the run as it is now."""
-        self.segment, self.time = segment, self.begin + elapsed
+        self._prepare(segment, elapsed)
         self.origins[-1], self.watches[-1] = self.looker.working.state, watch
         self.marks = self.watchlist.marks()
+        self.looker.look(self.origins[-1], 0.0)
+        for k in range(len(self.marks)):
+            notice(self.marks, k, self.time, self.watchlist.value(k, self.time, self.looker.places))
+
+    def _prepare(self, segment: Segment, elapsed: float) -> None:
+        """Plan the looks at the steps of a segment."""
+        self.segment, self.time = segment, self.begin + elapsed
         looks = self.watchlist.looks(segment.step)
         self.inner = np.arange(1, looks + 1) / looks
         self.first, self.last = np.array([EDGE, *self.inner]), np.array([*self.inner[:-1], 1.0 - EDGE, 1.0])
         self.findings = self.watchlist.findings(looks + 2)
-        self.looker.look(self.origins[-1], 0.0)
-        for k in range(len(self.marks)):
-            notice(self.marks, k, self.time, self.watchlist.value(k, self.time, self.looker.places))
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Return what later findings depend on."""
+        return {"origins": self.origins.copy(), "watches": self.watches.copy(), "marks": self.marks.copy()}
+
+    def restore(self, checkpoint: dict[str, Any], segment: Segment, elapsed: float) -> None:
+        """Go on from a checkpoint within a segment."""
+        self._prepare(segment, elapsed)
+        self.origins[:], self.watches[:] = checkpoint["origins"], checkpoint["watches"]
+        self.marks[:] = checkpoint["marks"]
 
     def advance(self, arguments: tuple[Any, ...], count: int, stride: int, rows: Floats) -> int:
         """Take up to ``count`` steps that are looked at; the status, or minus the number of findings.

@@ -1,15 +1,25 @@
 """What happened in a run: which event, when, in which direction, and where everything was."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from astropy.units import Quantity
 
 from binaryast.events import Event
 from binaryast.state import State
-from binaryast.units import Floats
+from binaryast.units import Floats, checked, quantity
 from binaryast.values import Value
+
+UNITS = {
+    "event": "",
+    "time": "s",
+    "direction": "",
+    "position": "m",
+    "velocity": "m / s",
+    "attitude": "",
+    "spin": "rad / s",
+}
 
 
 class OccurrenceFloats(NamedTuple):
@@ -32,6 +42,22 @@ class OccurrenceFloats(NamedTuple):
         vectors = np.zeros((0, count, 3))
         number = np.zeros(0)
         return cls(number, number, number, vectors, vectors, np.zeros((0, count, 3, 3)), vectors)
+
+    def datasets(self) -> dict[str, Any]:
+        """Return them as a file holds them, by name."""
+        found = zip(self._fields, self, strict=True)
+        return {f"events_{name}": quantity(array, UNITS[name]) if UNITS[name] else array for name, array in found}
+
+    @classmethod
+    def of_datasets(cls, datasets: dict[str, Any], count: int) -> "OccurrenceFloats":
+        """Return those of a file of that many bodies, none where it does not say."""
+        if "events_time" not in datasets:
+            return cls.none(count)
+        number = len(datasets["events_time"])
+        vectors = (number, count, 3)
+        shapes = ((number,), (number,), (number,), vectors, vectors, (*vectors, 3), vectors)
+        arrays = {name: np.asarray(datasets[f"events_{name}"], dtype=np.float64) for name in cls._fields}
+        return cls(*(checked(array, name, shape) for (name, array), shape in zip(arrays.items(), shapes, strict=True)))
 
     @classmethod
     def joined(cls, parts: "list[OccurrenceFloats]") -> "OccurrenceFloats":

@@ -8,13 +8,22 @@ from datetime import UTC, datetime
 from functools import cache
 from importlib.metadata import version
 from math import inf, pi
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from astropy.units import Quantity
 
-from binaryast import choosing, closest, constants, legs
-from binaryast.errors import AccuracyError, BinaryastError, EndWarning, GravityWarning, InputError, StepWarning
+from binaryast import choosing, closest, constants, legs, streaming
+from binaryast.errors import (
+    AccuracyError,
+    BinaryastError,
+    EndWarning,
+    GravityWarning,
+    InputError,
+    StepWarning,
+    StorageError,
+)
 from binaryast.events import Contact, Event, checked
 from binaryast.gravity import LARGEST_DEGREE
 from binaryast.impulses import AnyImpulse, in_order
@@ -25,9 +34,12 @@ from binaryast.kernels.jit import source_hash
 from binaryast.outcome import Outcome, interruption_message
 from binaryast.progress import bar, said_if_long
 from binaryast.rates import rates
+from binaryast.run_file import pieces_of
 from binaryast.schedule import Leg, schedule
 from binaryast.state import State
 from binaryast.stepping import SteppedRun, turn_error
+from binaryast.storage import as_path, refuse
+from binaryast.streaming import Memory
 from binaryast.system import Pair, System
 from binaryast.trajectory import Trajectory, TrajectoryFloats
 from binaryast.trials import Trials
@@ -48,12 +60,33 @@ TRY_OUT = Splitting(quantity(1.0, "s"))
 
 
 class Method(NamedTuple):
-    """How a run is to be followed, by an integrator or to an accuracy; whether with a bar; what is looked for."""
+    """How a run is to be followed, by an integrator or to an accuracy; whether with a bar; where its rows go."""
 
     integrator: Integrator | None
     accuracy: float
     progress: bool
+    keeper: Memory
     events: tuple[Event, ...] = ()
+
+
+class Inputs(NamedTuple):
+    """What a run depends on beside its system, checked: start, times [s], method, impulses in order, and events."""
+
+    state: State
+    end: float
+    interval: float | None
+    integrator: Integrator | None
+    accuracy: float
+    impulses: tuple[AnyImpulse, ...]
+    events: tuple[Event, ...] = ()
+
+
+class Place(NamedTuple):
+    """Which leg of a run: its number, the inputs of the run, and the legs before."""
+
+    number: int
+    inputs: Inputs
+    runs: list[Trajectory]
 
 
 class Followed(NamedTuple):
@@ -75,6 +108,8 @@ def propagate(
     impulses: Sequence[AnyImpulse] = (),
     events: Sequence[Event] = (),
     progress: bool = False,
+    file: str | Path | None = None,
+    force: bool = False,
 ) -> Trajectory:
     """Follow a system through time.
 
@@ -109,6 +144,12 @@ def propagate(
         is a ``Contact(terminal=False)``.
     progress : bool
         Whether to show a bar with the simulated and the remaining time, on standard error.
+    file : path, optional
+        Where the run is written while it is under way: it is there from the first step on, rows are appended to it and
+        leave memory, and at the end it becomes the HDF5 file that `Trajectory.write` makes. Whatever ends the process,
+        `binaryast.resume` goes on from there. Rows of more than 64 MB stay in the file, and are read as needed.
+    force : bool
+        Whether a file of that name may be replaced.
 
     Returns
     -------
@@ -126,6 +167,8 @@ def propagate(
     AccuracyError
         Where an accuracy cannot be had, with the one that can, or the time for which it can: round-off grows to more
         than what was asked, as it does soon where the motion is chaotic.
+    StorageError
+        Where the file cannot be written, or no more of it; then what was written before remains.
     InputError
         For anything else that cannot be.
 
@@ -155,41 +198,64 @@ def propagate(
         raise InputError(
             f"propagate: got integrator={brief(integrator)} and accuracy={brief(accuracy)}: give one of them"
         )
+    accuracy = _accuracy(1e-6 if accuracy is None else accuracy)
     _check_kinds(system, state, integrator or TRY_OUT)
-    wanted = _accuracy(1e-6 if accuracy is None else accuracy)
-    method = Method(integrator, wanted, progress, checked(events, system))
+    looked_for = checked(events, system)
     end = float(to_si(duration, "s", "duration", sign="positive"))
     interval = None if save_every is None else float(to_si(save_every, "s", "save_every", sign="positive"))
-    impulses = in_order(impulses, system, end)
-    runs: list[Trajectory] = []
+    inputs = Inputs(state, end, interval, integrator, accuracy, in_order(impulses, system, end), looked_for)
+    if file is None:
+        return follow(system, inputs, Memory(), progress=progress)
+    path = as_path(file)
+    refuse(path, force=force)
+    start = _quietly(system, inputs, Followed(_one_row(system, state, Leg.of_run(end)), integrator or TRY_OUT, {}))
+    with streaming.begun(path, _stopped(start, inputs), inputs._asdict(), force=force) as keeper:
+        return follow(system, inputs, keeper, progress=progress)
+
+
+def _stopped(start: Trajectory, inputs: Inputs) -> Trajectory:
+    """Return a run that has not moved yet, as its file tells of it."""
+    return replace(start, status="interrupted", message="stopped before it moved", impulses=inputs.impulses)
+
+
+def follow(system: System, inputs: Inputs, keeper: Memory, *, progress: bool) -> Trajectory:
+    """Follow a system through all legs that are not over yet, and have their rows kept."""
+    method = Method(inputs.integrator, inputs.accuracy, progress, keeper, inputs.events)
+    runs = keeper.runs()
     pressed = False
-    for leg, due in legs.cut(end, interval, impulses):
-        now = runs[-1][-1] if runs else state
+    for number, (leg, due) in enumerate(legs.cut(inputs.end, inputs.interval, inputs.impulses)):
+        if number < len(runs):
+            continue
+        if runs and runs[-1].status != "completed":
+            break
+        now = runs[-1][-1] if runs else inputs.state
         for impulse in due:
             now = impulse.apply(now, system)
         try:
             if pressed and leg.length:
                 raise KeyboardInterrupt
-            followed = _follow(system, now, leg, method)
+            followed = _follow(system, now, leg, method, Place(number, inputs, runs))
         except KeyboardInterrupt:  # between two legs: what has been computed is kept
             if not runs:
                 raise
             followed = _interrupted(system, now, leg)
+        except StorageError:  # it speaks of the file, not of the leg
+            raise
         except BinaryastError as error:  # it speaks of a start, a duration: those of the leg
             if not leg.begin:
                 raise
             raise type(error)(f"from {span(leg.begin)} on, after an impulse: {error}") from None
-        runs.append(_trajectory(system, state, method.events, *followed))
+        runs.append(_trajectory(system, inputs.state, method.events, *followed))
+        keeper.over(number, leg, runs, legs.joined(runs, inputs.impulses))
         pressed = followed.outcome.pressed
-        if runs[-1].status != "completed":
-            break
-    return legs.joined(runs, impulses)
+    return keeper.finished(legs.joined(runs, inputs.impulses))
 
 
 def follow_leg(system: System, state: State, leg: Leg, integrator: Integrator, events: Sequence[Event]) -> Trajectory:
     """Return a run along a leg by itself: what acts from outside knows the time when it begins."""
-    method = Method(integrator, 0.0, False, checked(events, system))
-    return _trajectory(system, state, method.events, *_follow(system, state, leg, method))
+    inputs = Inputs(state, leg.end, None, integrator, 0.0, (), checked(events, system))
+    method = Method(integrator, 0.0, False, Memory(), inputs.events)
+    return _trajectory(system, state, inputs.events, *_follow(system, state, leg, method, Place(0, inputs, [])))
 
 
 def _accuracy(value: Any) -> float:
@@ -200,19 +266,39 @@ def _accuracy(value: Any) -> float:
     return asked
 
 
-def _follow(system: System, state: State, leg: Leg, method: Method) -> Followed:
+def _follow(system: System, state: State, leg: Leg, method: Method, place: Place) -> Followed:
     """Follow a system along a leg, as far as it goes."""
     if not leg.length:
         return Followed(_one_row(system, state, leg), method.integrator or TRY_OUT, {})
     if method.integrator is None:
-        return _to_accuracy(system, state, leg, method)
+        return _to_accuracy(system, state, leg, method, place)
     _check_kinds(system, state, method.integrator)
     compiling = "heyoka compiles the equations, once for all systems of one kind; it may take some seconds"
+    method.keeper.begin(place.number, leg, {})
     with said_if_long(compiling, method.progress and isinstance(method.integrator, Taylor)):
         run = _run(system, state, method.integrator, leg, method.events)
+    outcome = _gone(system, run, leg, method, place, (method.integrator, {}))
+    return Followed(outcome, method.integrator, {})
+
+
+def _gone(
+    system: System, run: streaming.Run, leg: Leg, method: Method, place: Place, how: tuple[Integrator, dict[str, Any]]
+) -> Outcome:
+    """Have a run followed as far as it goes, with a bar, and its rows kept."""
+
+    def report(outcome: Outcome) -> Trajectory:
+        under_way = _quietly(system, place.inputs, Followed(outcome, *how))
+        return legs.joined([*place.runs, under_way], place.inputs.impulses)
+
+    method.keeper.report, method.keeper.refine = report, _refine
     with bar(leg.whole, method.progress, leg.begin) as show:
-        run.go(show)
-    return Followed(_outcome(run), method.integrator, {})
+        return method.keeper.go(run, show)
+
+
+def _refine(run: streaming.Run) -> None:
+    """Look for the closest approach also within steps; solvers that know their arcs have done so."""
+    if isinstance(run, SteppedRun):
+        closest.refine(run)
 
 
 def _one_row(system: System, state: State, leg: Leg) -> Outcome:
@@ -226,19 +312,21 @@ def _interrupted(system: System, state: State, leg: Leg) -> Followed:
     return Followed(replace(_one_row(system, state, leg), status="interrupted", message=message), TRY_OUT, {})
 
 
-def _to_accuracy(system: System, state: State, leg: Leg, method: Method) -> Followed:
+def _to_accuracy(system: System, state: State, leg: Leg, method: Method, place: Place) -> Followed:
     """Follow a leg to an accuracy: plan, run, estimate, and again with a shorter step where it is not reached."""
     asked, length = method.accuracy, leg.length
     SteppedRun(system, state, TRY_OUT, schedule(leg, leg.whole), leg.begin)  # first says what is wrong with the start
     trials = Trials(system, state, leg.begin)
-    plan = choosing.plan(trials, length, asked, min(length / 4, leg.interval or length))
-    for _ in range(ATTEMPTS):
+    known = dict(method.keeper.planned(place.number))
+    first = known.pop("attempt", 0)
+    longest = min(length / 4, leg.interval or length)
+    plan = choosing.Plan(**{"floor": None} | known) if known else choosing.plan(trials, length, asked, longest)
+    for attempt in range(first, ATTEMPTS):
+        method.keeper.begin(place.number, leg, plan._asdict() | {"attempt": attempt})
         segments = schedule(leg, plan.integrator.step.value)
         run = SteppedRun(system, state, plan.integrator, segments, leg.begin, method.events)
-        with bar(leg.whole, method.progress, leg.begin) as show:
-            run.go(show)
-        outcome = _outcome(run)
         about = {"accuracy": asked, "choice": plan.reason}
+        outcome = _gone(system, run, leg, method, place, (plan.integrator, about))
         if outcome.status != "completed":
             return Followed(outcome, plan.integrator, about)
         try:
@@ -248,7 +336,7 @@ def _to_accuracy(system: System, state: State, leg: Leg, method: Method) -> Foll
             found = None
         if found is None:
             text = "the error at the end is not known: runs with other steps did not come so far, or were stopped"
-            warnings.warn(text, StepWarning, stacklevel=4)
+            warnings.warn(text, StepWarning, stacklevel=5)
             return Followed(outcome, plan.integrator, about)
         if found.within(asked):
             return Followed(outcome, plan.integrator, about | {"estimated_error": found.error})
@@ -257,13 +345,6 @@ def _to_accuracy(system: System, state: State, leg: Leg, method: Method) -> Foll
         f"accuracy: {asked:g} is not reached after {span(leg.end)} with steps down to {outcome.step:.3g} s: ask for "
         "ten times more, or for a shorter run"
     )
-
-
-def _outcome(run: "SteppedRun | SolvedRun | TaylorRun") -> Outcome:
-    """Return what has been computed, with the closest approach also where it lies within a step."""
-    if isinstance(run, SteppedRun):
-        closest.refine(run)
-    return run.outcome()
 
 
 def _run(
@@ -322,7 +403,7 @@ def _check_turns(system: System, state: State, integrator: Stepping, step: float
             warnings.warn(
                 f"{what} turns {body.name} by {turn:.2g} rad: {lead}; {remedy}, and ba.Splitting turns it exactly",
                 StepWarning,
-                stacklevel=5,
+                stacklevel=6,
             )
 
 
@@ -338,8 +419,15 @@ def _check_orbits(system: System, state: State, integrator: Stepping, step: floa
                 f"{0.05 / rate / longest:.3g} s would be 0.05 rad of it. A light body's error does not show in the "
                 "energy of all",
                 StepWarning,
-                stacklevel=5,
+                stacklevel=6,
             )
+
+
+def _quietly(system: System, inputs: Inputs, followed: Followed) -> Trajectory:
+    """Return what has been computed of a run that goes on: what is to be said of it is said at its end."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return _trajectory(system, inputs.state, inputs.events, *followed)
 
 
 def _trajectory(
@@ -352,7 +440,7 @@ def _trajectory(
 ) -> Trajectory:
     """Return what has been computed of a run from a state, and warn where it ended early or badly."""
     if outcome.status in ("contact", "failed"):
-        warnings.warn(f"the run ended after {outcome.time[-1]:g} s: {outcome.message}", EndWarning, stacklevel=3)
+        warnings.warn(f"the run ended after {outcome.time[-1]:g} s: {outcome.message}", EndWarning, stacklevel=4)
     figures = _figures(system, outcome)
     of_total, of_potential = figures["max_relative_energy_error"], figures["max_energy_error_over_potential"]
     error = min(of_total, of_potential)
@@ -364,13 +452,13 @@ def _trajectory(
             f"the energy was wrong by {error:.2g} of its size at some step: {cause} for what happened, such as a "
             "close approach",
             StepWarning,
-            stacklevel=3,
+            stacklevel=4,
         )
     figures["max_next_degree_term"] = _next_degree_term(system, outcome)
     return Trajectory(
         system=system,
         integrator=integrator,
-        si=TrajectoryFloats(outcome.time, *outcome.motion),
+        si=TrajectoryFloats(*(_in_memory(part) for part in (outcome.time, *outcome.motion))),
         epoch=state.epoch,
         frame=state.frame,
         status=outcome.status,
@@ -396,6 +484,11 @@ def _watched(system: System, events: tuple[Event, ...], outcome: Outcome) -> tup
     return events
 
 
+def _in_memory(rows: Any) -> Floats:
+    """Return rows, the last alone of those that are in a file."""
+    return rows if isinstance(rows, np.ndarray) else np.asarray(rows[len(rows) - 1 :])
+
+
 def _figures(system: System, outcome: Outcome) -> dict[str, Any]:
     """Return the largest errors in the ways in which they are reported."""
     watch = outcome.watch.array
@@ -403,9 +496,13 @@ def _figures(system: System, outcome: Outcome) -> dict[str, Any]:
     angular = float(np.linalg.norm(watch[loop.ANGULAR_MOMENTUM : loop.ANGULAR_MOMENTUM + 3]))
     masses = np.array([body.si.mass * body.pulls for body in system.bodies])
     velocity = outcome.motion.velocity
-    linear = np.einsum("i,nij->nj", masses, velocity) - outcome.motion.impulse
-    of_rows = float(np.linalg.norm(linear - linear[0], axis=1).max())
-    speeds = masses @ np.linalg.norm(velocity[0], axis=1)
+    impulse = outcome.motion.impulse
+    first = np.einsum("i,nij->nj", masses, velocity[:1]) - impulse[:1]
+    of_rows = 0.0
+    for begin, end in pieces_of(len(velocity)):
+        linear = np.einsum("i,nij->nj", masses, velocity[begin:end]) - impulse[begin:end]
+        of_rows = max(of_rows, float(np.linalg.norm(linear - first, axis=1).max()))
+    speeds = masses @ np.linalg.norm(velocity[:1][0], axis=1)
     return {
         "max_relative_energy_error": _over(energy_error, abs(watch[loop.ENERGY])),
         "max_energy_error": quantity(energy_error, "J"),
@@ -434,7 +531,7 @@ def _next_degree_term(system: System, outcome: Outcome) -> float | None:
             f"{pair.gravity!r} between {system.names[pair.primary]} and {system.names[pair.secondary]} leaves out "
             f"terms up to {size:.2g} of G m1 m2/r, and more of the torques: {_remedy(system, outcome, pair)}",
             GravityWarning,
-            stacklevel=4,
+            stacklevel=5,
         )
     return size
 
@@ -453,14 +550,19 @@ def _remedy(system: System, outcome: Outcome, pair: Pair) -> str:
 def _configurations(outcome: Outcome, pair: Pair) -> tuple[Floats, Floats]:
     """Return X (N, 3) and R (N, 3, 3) of a pair, (34) and (35), at saved rows, that of its closest among them."""
     one, two = pair.secondary, pair.primary
-    apart = outcome.motion.position[:, one] - outcome.motion.position[:, two]
-    distances = np.linalg.norm(apart, axis=1)
-    rows = np.unique(np.linspace(0, len(apart) - 1, min(len(apart), TERM_ROWS)).astype(int))
-    rows = np.append(rows, np.argmin(distances))
-    rows = rows[distances[rows] > 0]
-    to_primary = np.swapaxes(outcome.motion.attitude[rows, two], -1, -2)
-    x = np.einsum("nij,nj->ni", to_primary, apart[rows])
-    return x, to_primary @ outcome.motion.attitude[rows, one]
+    position, attitude = outcome.motion.position, outcome.motion.attitude
+    count, closest, row = len(position), np.inf, 0
+    for begin, end in pieces_of(count):
+        piece = position[begin:end]
+        distances = np.linalg.norm(piece[:, one] - piece[:, two], axis=1)
+        if distances.min() < closest:
+            closest, row = distances.min(), begin + int(np.argmin(distances))
+    rows = np.append(np.unique(np.linspace(0, count - 1, min(count, TERM_ROWS)).astype(int)), row)
+    places, turns = position[rows], attitude[rows]
+    apart = places[:, one] - places[:, two]
+    distinct = np.any(apart, axis=1)
+    to_primary = np.swapaxes(turns[distinct, two], -1, -2)
+    return np.einsum("nij,nj->ni", to_primary, apart[distinct]), to_primary @ turns[distinct, one]
 
 
 def _over(error: float, size: float) -> float:

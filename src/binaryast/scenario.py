@@ -94,9 +94,10 @@ from binaryast.polyhedron import Polyhedron
 from binaryast.polyhedron_pair import PolyhedronPair
 from binaryast.polyhedron_point import PolyhedronPoint
 from binaryast.state import RelativeState, State
-from binaryast.storage import as_path
+from binaryast.storage import NEWER, as_path
 from binaryast.system import OTHERS, System
-from binaryast.tables import argument, call, check_known, check_needed, choice, epoch, table_of, text_of, time
+from binaryast.tables import Found, argument, call, check_keys, choice, epoch, table_of, text_of, time
+from binaryast.toml_lines import line_of, lines_of
 from binaryast.units import brief, parse
 from binaryast.values import Value
 
@@ -128,6 +129,7 @@ GRAVITIES = {
         Adaptive,
     )
 }
+FORMAT_VERSION = 1  # what a file may say that it is written for
 STATES = ("circular_orbit", "from_elements", "from_orbits", "inertial", "relative")
 
 
@@ -209,55 +211,105 @@ def loads(text: str, *, name: str, where: str, folder: Path = Path()) -> Scenari
         tables = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         raise ScenarioError(f"{where}: not TOML: {brief(error)}") from None
-    try:
-        return _scenario(tables, name, text, folder)
-    except InputError as error:
-        raise ScenarioError(f"{where}: {error}") from None
+    found = Found()
+    scenario = found.attempt(_scenario, tables, name, text, folder)
+    if not found.mistakes:
+        return scenario  # type: ignore[no-any-return]
+    lines = lines_of(text)
+    placed = sorted(((line_of(one, lines) or 0, one) for one in found.mistakes), key=lambda item: item[0])
+    said = [f"line {line}: {one}" if line else one for line, one in placed]
+    count = "" if len(said) == 1 else f"{len(said)} mistakes: "
+    raise ScenarioError(f"{where}: {count}{' | '.join(said)}")
 
 
 def _scenario(tables: dict[str, Any], name: str, text: str, folder: Path) -> Scenario:
-    """Build everything that the tables say."""
-    known = ("title", "bodies", "gravity", "perturbations", "state", "run", "impulses", "events", "sources")
-    check_known(tables, known, "")
-    check_needed(tables, ("bodies", "state", "run"), "")
+    """Build everything that the tables say; what is wrong with them is found as a whole, as far as it can be."""
+    found = Found()
+    known = ["format_version", "title", "bodies", "gravity", "perturbations", "state", "run"]
+    known += ["impulses", "events", "sources"]
+    found.attempt(check_keys, tables, known, ("bodies", "state", "run"), "")
+    found.attempt(_check_version, tables.get("format_version", FORMAT_VERSION))
+    system = found.attempt(_system, tables, folder)
+    run = found.attempt(_run, tables) or {}
+    scenario = {
+        "name": name,
+        "title": found.attempt(text_of, tables.get("title", name), "title"),
+        "system": system,
+        "state": found.attempt(_state, tables, system),
+        "impulses": found.attempt(_impulses, tables.get("impulses", []), system, run.get("duration")),
+        "events": found.attempt(_events, tables.get("events", []), system),
+        "sources": found.attempt(_sources, tables.get("sources", [])),
+        "text": text,
+    }
+    found.said()
+    return Scenario(**scenario, **run)
+
+
+def _check_version(value: Any) -> None:
+    """Raise where a newer version of the package is meant."""
+    if isinstance(value, bool) or not isinstance(value, int) or value < 1:
+        raise InputError(f"format_version: expected a whole number from 1 to {FORMAT_VERSION}, got {brief(value)}")
+    if value > FORMAT_VERSION:
+        raise InputError(f"format_version: expected 1 to {FORMAT_VERSION}, got {value}: {NEWER}")
+
+
+def _run(tables: dict[str, Any]) -> dict[str, Any]:
+    """Return how to run it: integrator, accuracy, duration and how often to save."""
+    if "run" not in tables:
+        return {}
+    found, run = Found(), table_of(tables, "run")
+    found.attempt(check_keys, run, ("duration", "step", "save_every", "accuracy", "integrator"), ("duration",), "run.")
+    result = {
+        "integrator": found.attempt(_integrator, run),
+        "accuracy": found.attempt(_accuracy, run["accuracy"]) if "accuracy" in run else None,
+        "duration": found.attempt(time, run["duration"], "run.duration") if "duration" in run else None,
+        "save_every": found.attempt(time, run["save_every"], "run.save_every") if "save_every" in run else None,
+    }
+    found.said()
+    return result
+
+
+def _system(tables: dict[str, Any], folder: Path) -> System | None:
+    """Return the bodies and their gravity; None where there are no bodies, which is said elsewhere."""
+    found = Found()
+    models = found.attempt(_gravity, tables)
+    outside = found.attempt(_perturbations_of, tables)
+    if "bodies" not in tables:
+        found.said()
+        return None
     bodies = tables["bodies"]
     if not isinstance(bodies, list) or not all(isinstance(body, dict) for body in bodies):
-        raise InputError("bodies: expected a table [[bodies]] for each body, the primary first")
-    models = _gravity(table_of(tables, "gravity"))
-    system = System(
-        [_body(body, f"bodies[{i}]", folder) for i, body in enumerate(bodies)],
-        models,
-        [_perturbation(table, f"perturbations[{i}]") for i, table in enumerate(_perturbations(tables))],
-    )
-    run = table_of(tables, "run")
-    check_known(run, ("duration", "step", "save_every", "accuracy", "integrator"), "run.")
-    check_needed(run, ("duration",), "run.")
-    duration = time(run["duration"], "run.duration")
-    return Scenario(
-        name=name,
-        title=text_of(tables.get("title", name), "title"),
-        system=system,
-        state=_state(table_of(tables, "state"), system),
-        integrator=_integrator(run),
-        accuracy=_accuracy(run["accuracy"]) if "accuracy" in run else None,
-        duration=duration,
-        save_every=time(run["save_every"], "run.save_every") if "save_every" in run else None,
-        impulses=_impulses(tables.get("impulses", []), system, float(duration.value)),
-        events=_events(tables.get("events", []), system),
-        sources=_sources(tables.get("sources", [])),
-        text=text,
-    )
+        found.mistakes.append("bodies: expected a table [[bodies]] for each body, the primary first")
+        found.said()
+    made = [found.attempt(_body, body, f"bodies[{i}]", folder) for i, body in enumerate(bodies)]
+    found.said()
+    return System(made, models, outside or ())
 
 
 def _body(table: dict[str, Any], where: str, folder: Path) -> RigidBody:
     """Return a body."""
-    check_known(table, ("name", "shape", "mass", "density", "gm", "inertia", "pulls"), f"{where}.")
-    check_needed(table, ("name", "shape"), f"{where}.")
+    found = Found()
     units = {"mass": "kg", "density": "kg / m3", "gm": "m3 / s2", "inertia": "kg m2"}
-    given = {key: text_of(table[key], f"{where}.{key}", unit) for key, unit in units.items() if key in table}
-    shape = _shape(table_of(table, "shape", f"{where}."), f"{where}.shape", folder)
-    quantities = {key: parse(text, f"{where}.{key}", f"1 {units[key]}") for key, text in given.items()}
-    return RigidBody(table["name"], shape, **quantities, pulls=table.get("pulls", True))
+    found.attempt(check_keys, table, ("name", "shape", *units, "pulls"), ("name", "shape"), f"{where}.")
+    quantities = {
+        key: found.attempt(_with_unit, table[key], f"{where}.{key}", unit)
+        for key, unit in units.items()
+        if key in table
+    }
+    shape: Any = found.attempt(_shape_of, table, where, folder) if "shape" in table else None
+    found.said()
+    try:
+        return RigidBody(table["name"], shape, **quantities, pulls=table.get("pulls", True))
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from None
+
+
+def _with_unit(value: Any, where: str, unit: str) -> Quantity:
+    return parse(text_of(value, where, unit), where, f"1 {unit}")
+
+
+def _shape_of(table: dict[str, Any], where: str, folder: Path) -> Any:
+    return _shape(table_of(table, "shape", f"{where}."), f"{where}.shape", folder)
 
 
 def _shape(table: dict[str, Any], where: str, folder: Path) -> Any:
@@ -289,15 +341,16 @@ def _parts(tables: Any, where: str, folder: Path) -> list[unions.Part]:
         raise InputError(f"{where}: expected tables, each with a shape and a mass, got {brief(tables)}")
     parts = []
     for i, table in enumerate(tables):
-        check_needed(table, ("shape",), f"{where}[{i}].")
+        check_keys(table, table, ("shape",), f"{where}[{i}].")
         shape = _shape(table_of(table, "shape", f"{where}[{i}]."), f"{where}[{i}].shape", folder)
         others = {key: value for key, value in table.items() if key != "shape"}
         parts.append(call(unions.Part, {"shape": shape}, others, f"{where}[{i}]"))
     return parts
 
 
-def _gravity(table: dict[str, Any]) -> Any:
+def _gravity(tables: dict[str, Any]) -> Any:
     """Return the model, second degree where the file says nothing; or models by pairs, the first one for the others."""
+    table = table_of(tables, "gravity")
     pairs = table.get("pairs")
     others = {key: value for key, value in table.items() if key != "pairs"} or {"type": "SecondDegree"}
     model = _model(others, "gravity")
@@ -308,7 +361,7 @@ def _gravity(table: dict[str, Any]) -> Any:
     models: dict[Any, Any] = {OTHERS: model}
     for i, pair in enumerate(pairs):
         where = f"gravity.pairs[{i}]"
-        check_needed(pair, ("bodies",), f"{where}.")
+        check_keys(pair, pair, ("bodies",), f"{where}.")
         names = pair["bodies"]
         if not isinstance(names, list) or len(names) != 2 or not all(isinstance(name, str) for name in names):
             raise InputError(f"{where}.bodies: expected the names of two bodies, got {brief(names)}")
@@ -324,12 +377,15 @@ def _model(table: dict[str, Any], where: str) -> Any:
     return _typed(table, GRAVITIES, where)
 
 
-def _perturbations(tables: dict[str, Any]) -> list[dict[str, Any]]:
-    """Return the tables of perturbations."""
-    found = tables.get("perturbations", [])
-    if not isinstance(found, list) or not all(isinstance(table, dict) for table in found):
-        raise InputError(f"perturbations: expected tables [[perturbations]], got {brief(found)}")
-    return found
+def _perturbations_of(tables: dict[str, Any]) -> list[perturbations.Perturbation]:
+    """Return what acts from outside."""
+    outside = tables.get("perturbations", [])
+    if not isinstance(outside, list) or not all(isinstance(table, dict) for table in outside):
+        raise InputError(f"perturbations: expected tables [[perturbations]], got {brief(outside)}")
+    found = Found()
+    made = [found.attempt(_perturbation, table, f"perturbations[{i}]") for i, table in enumerate(outside)]
+    found.said()
+    return made
 
 
 def _perturbation(table: dict[str, Any], where: str) -> perturbations.Perturbation:
@@ -374,19 +430,24 @@ def _accuracy(value: Any) -> float:
     return float(value)
 
 
-def _impulses(tables: Any, system: System, end: float) -> tuple[impulses.AnyImpulse, ...]:
-    """Return the impulses, each of which must be before the end [s]."""
+def _impulses(tables: Any, system: System | None, duration: Quantity | None) -> tuple[impulses.AnyImpulse, ...]:
+    """Return the impulses, each of which must be before the end."""
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise InputError(f"impulses: expected tables [[impulses]], got {brief(tables)}")
-    found = [_typed(table, impulses.KINDS, f"impulses[{i}]") for i, table in enumerate(tables)]
-    return impulses.in_order(found, system, end)
+    found = Found()
+    made = [found.attempt(_typed, table, impulses.KINDS, f"impulses[{i}]") for i, table in enumerate(tables)]
+    found.said()
+    return () if system is None or duration is None else impulses.in_order(made, system, float(duration.value))
 
 
-def _events(tables: Any, system: System) -> tuple[events.Event, ...]:
+def _events(tables: Any, system: System | None) -> tuple[events.Event, ...]:
     """Return the events that are looked for."""
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise InputError(f"events: expected tables [[events]], got {brief(tables)}")
-    return events.checked([_event(table, f"events[{i}]") for i, table in enumerate(tables)], system)
+    found = Found()
+    made = [found.attempt(_event, table, f"events[{i}]") for i, table in enumerate(tables)]
+    found.said()
+    return () if system is None else events.checked(made, system)
 
 
 def _event(table: dict[str, Any], where: str) -> events.Event:
@@ -399,46 +460,56 @@ def _event(table: dict[str, Any], where: str) -> events.Event:
     return call(kind, times, others, where)  # type: ignore[no-any-return]
 
 
-def _state(table: dict[str, Any], system: System) -> State:
-    """Return the start, made in one of the ways of `STATES`."""
+def _state(tables: dict[str, Any], system: System | None) -> State | None:
+    """Return the start, made in one of the ways of `STATES`; where there is no system, only look at what is said."""
+    if "state" not in tables:
+        return None
+    table = table_of(tables, "state")
     kind = choice(table, STATES, "state")
     arguments = {key: value for key, value in table.items() if key != "type"}
+    found, look = Found(), system is None
     if "epoch" in arguments:
-        arguments["epoch"] = epoch(arguments["epoch"])
+        arguments["epoch"] = found.attempt(epoch, arguments["epoch"])
+    ready: dict[str, Any] = {} if kind in ("inertial", "relative") else {"system": system}
     if kind == "from_orbits":
-        return call(State.from_orbits, {"system": system} | _orbits(arguments), arguments, "state")  # type: ignore[no-any-return]
-    if kind == "inertial":
-        return call(State, {}, arguments, "state")  # type: ignore[no-any-return]
-    if kind == "relative":
-        relative: RelativeState = call(RelativeState, {}, arguments, "state")
-        return relative.to_state(system)
-    return call(getattr(State, kind), {"system": system}, arguments, "state")  # type: ignore[no-any-return]
+        ready |= found.attempt(_orbits, arguments) or {"orbits": None, "poles": None}
+    makers = {"inertial": State, "relative": RelativeState}
+    maker = makers[kind] if kind in makers else getattr(State, kind)
+    look_only = look or bool(found.mistakes)
+    made = found.attempt(lambda: call(maker, ready, arguments, "state", only_look=look_only))
+    found.said()
+    return made.to_state(system) if kind == "relative" and system is not None else made  # type: ignore[no-any-return]
 
 
 def _orbits(arguments: dict[str, Any]) -> dict[str, Any]:
     """Take the tables [[state.orbits]] and [state.poles] out of the arguments; return what they say."""
-    tables, poles = arguments.pop("orbits", None), arguments.pop("poles", None)
-    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise InputError("state.orbits: expected a table [[state.orbits]] for each body but the primary")
-    orbits = [call(Orbit, {}, table, f"state.orbits[{i}]") for i, table in enumerate(tables)]
-    if poles is None:
-        return {"orbits": orbits, "poles": None}
-    if not isinstance(poles, dict):
-        raise InputError(f"state.poles: expected a table of poles by the names of bodies, got {brief(poles)}")
-    return {"orbits": orbits, "poles": {k: argument(v, "pole", f"state.poles.{k}") for k, v in poles.items()}}
+    tables, poles, found = arguments.pop("orbits", None), arguments.pop("poles", None), Found()
+    orbits: list[Any] = []
+    if isinstance(tables, list) and all(isinstance(table, dict) for table in tables):
+        orbits = [found.attempt(call, Orbit, {}, table, f"state.orbits[{i}]") for i, table in enumerate(tables)]
+    else:
+        found.mistakes.append("state.orbits: expected a table [[state.orbits]] for each body but the primary")
+    if poles is not None and not isinstance(poles, dict):
+        found.mistakes.append(f"state.poles: expected a table of poles by the names of bodies, got {brief(poles)}")
+    elif poles is not None:
+        poles = {k: found.attempt(argument, v, "pole", f"state.poles.{k}") for k, v in poles.items()}
+    found.said()
+    return {"orbits": orbits, "poles": poles}
 
 
 def _sources(value: Any) -> tuple[dict[str, str], ...]:
     """Return where the numbers come from."""
     if not isinstance(value, list):
         raise InputError(f"sources: expected tables [[sources]], got {brief(value)}")
-    return tuple(_source(source, f"sources[{i}]") for i, source in enumerate(value))
+    found = Found()
+    made = [found.attempt(_source, source, f"sources[{i}]") for i, source in enumerate(value)]
+    found.said()
+    return tuple(made)
 
 
 def _source(table: Any, where: str) -> dict[str, str]:
     """Return where a number comes from."""
     if not isinstance(table, dict):
         raise InputError(f"{where}: expected a table, got {brief(table)}")
-    check_known(table, ("what", "source", "uncertainty", "note"), f"{where}.")
-    check_needed(table, ("what", "source"), f"{where}.")
+    check_keys(table, ("what", "source", "uncertainty", "note"), ("what", "source"), f"{where}.")
     return {key: text_of(value, f"{where}.{key}") for key, value in table.items()}

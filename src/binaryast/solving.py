@@ -12,8 +12,8 @@ from binaryast.arcs import Arc, ArcLookout
 from binaryast.errors import InputError
 from binaryast.events import Event
 from binaryast.integrators import RungeKutta
-from binaryast.kernels import loop
 from binaryast.outcome import (
+    Happening,
     Outcome,
     Watch,
     contact_message,
@@ -33,6 +33,8 @@ from binaryast.working import Motion
 from binaryast.working.base import coinciding, nothing_given
 from binaryast.working.bodies import WorkingBodies
 
+CHECKPOINT = ("saved", "steps", "elapsed", "closest_time", "wall_time")
+OF_SOLVER = ("t", "y", "f", "h_abs")  # what the next step of SciPy's Runge-Kutta methods depends on
 NEVER_REJECT = 1e200  # a tolerance for fixed steps
 
 
@@ -53,7 +55,11 @@ class SolvedRun:
         else:
             self.times = row_times(leg)
         self.y = self.equations.from_state(_about(self.working.origin, state))
-        self.rows = [self.y]
+        self.start = self.y
+        self.rows, self.saved, self.taken = [self.y], 1, 0  # in memory; how many there are, and were taken
+        self.last_row = self.y
+        self.solver: Any = None
+        self.continued: dict[str, Any] = {}
         self.watch = Watch()
         self.ended, self.message = "completed", ""
         self.pressed: list[int] = []
@@ -80,6 +86,7 @@ class SolvedRun:
         """Follow the motion as far as it goes."""
         with keyboard() as self.pressed, np.errstate(all="ignore"):  # SciPy's own arithmetic, on its way to give up
             for solver in self._solvers():
+                self.solver = solver
                 while solver.status == "running" and self.ended == "completed":
                     began = time.perf_counter()
                     self._step(solver)
@@ -89,24 +96,36 @@ class SolvedRun:
                         self.ended, self.message = "interrupted", interruption_message(self.begin + self.elapsed)
                 if self.ended != "completed":
                     break
-        if self.times[len(self.rows) - 1] != self.elapsed:  # what ended the run is not one of its rows
-            self.times = np.append(self.times[: len(self.rows)], self.elapsed)
-            self.rows.append(self.y)
+        if self.times[self.saved - 1] != self.elapsed:  # what ended the run is not one of its rows
+            self.times = np.append(self.times[: self.saved], self.elapsed)
+            self._save(self.y)
+
+    def _save(self, row: Floats) -> None:
+        """Keep a row."""
+        self.rows.append(row)
+        self.last_row = row
+        self.saved += 1
 
     def _solvers(self) -> Iterator[Any]:
         """Yield SciPy's solver; of fixed steps one from each row to the next, to land on them exactly."""
         kind = getattr(integrate, self.integrator.method)
-        rhs, scales = self.equations.rhs, self.equations.scales(self.y)
-        if not self.segments:
-            yield kind(rhs, 0.0, self.y, self.end, rtol=self.integrator.rtol, atol=self.integrator.atol * scales)
-        row = 0
-        for segment in self.segments:
-            for _ in range(segment.steps // segment.stride):
-                begin, end = self.times[row : row + 2]
-                step = (end - begin) / segment.stride
+        rhs, atol = self.equations.rhs, self.integrator.atol * self.equations.scales(self.start)
+        if not self.segments and self.elapsed < self.end:
+            yield self._as_it_was(kind(rhs, 0.0, self.y, self.end, rtol=self.integrator.rtol, atol=atol))
+        strides = [segment.stride for segment in self.segments for _ in range(segment.steps // segment.stride)]
+        for row, stride in enumerate(strides, start=1):
+            if row >= self.saved:  # not before a checkpoint
+                begin, end = self.times[row - 1 : row + 1]
+                step = (end - begin) / stride
                 fixed = {"first_step": step, "max_step": step * (1 + 1e-9)}
-                yield kind(rhs, begin, self.y, end, rtol=NEVER_REJECT, atol=NEVER_REJECT, **fixed)
-                row += 1
+                yield self._as_it_was(kind(rhs, begin, self.y, end, rtol=NEVER_REJECT, atol=NEVER_REJECT, **fixed))
+
+    def _as_it_was(self, solver: Any) -> Any:
+        """Return a solver in the state of that of a checkpoint, the first time after one."""
+        for name, value in self.continued.items():
+            setattr(solver, name, value)
+        self.continued = {}
+        return solver
 
     def _step(self, solver: Any) -> None:
         """Take one step of the solver, look at what lies in it, and save the rows that it passes."""
@@ -117,20 +136,20 @@ class SolvedRun:
             between = solver.dense_output()
             walked = self.lookout.walk(Arc(self.elapsed, float(solver.t), self.y, solver.y.copy(), between))
             end, y = walked.end, walked.variables
-            while len(self.rows) < len(self.times) and self.times[len(self.rows)] < end:
-                due = self.times[len(self.rows)]
+            while self.saved < len(self.times) and self.times[self.saved] < end:
+                due = self.times[self.saved]
                 row = between(due)
                 self._look(due, row)
-                self.rows.append(row)
+                self._save(row)
             self._look(end, y)
         except Exception as error:  # of SciPy, or what a user's potential raises
-            self.elapsed, self.y = float(self.times[len(self.rows) - 1]), self.rows[-1]
+            self.elapsed, self.y = float(self.times[self.saved - 1]), self.last_row
             self.ended, self.message = "failed", f"{error}; the last good row is at {self.begin + self.elapsed:g} s"
             return
         self.y, self.elapsed = y, end
         self.steps += 1
-        if len(self.rows) < len(self.times) and self.times[len(self.rows)] == end:
-            self.rows.append(y)
+        if self.saved < len(self.times) and self.times[self.saved] == end:
+            self._save(y)
         if walked.pair is not None:
             self.ended, self.message = "contact", contact_message(self.system, walked.pair, self.begin + end)
         if walked.event is not None:
@@ -153,19 +172,61 @@ class SolvedRun:
         for array, values in zip(places, (now.x, now.v, now.R, now.Omega), strict=True):
             array[:] = values
 
-    def outcome(self) -> Outcome:
-        """Return what has been computed."""
-        times = self.times[: len(self.rows)].copy()
-        if self.lookout.closest < self.watch.array[loop.CLOSEST]:
-            self.watch.array[loop.CLOSEST], self.closest_time = self.lookout.closest, self.lookout.closest_time
+    def take_rows(self) -> tuple[Floats, Motion]:
+        """Return the rows that have been saved since the last call, with their times; they are kept no longer."""
+        times = self.times[self.taken : self.saved].copy()
+        motion = self._motion(self.rows, times)
+        self.rows, self.taken = [], self.saved
+        return self.begin + times, motion
+
+    @property
+    def happened(self) -> list[Happening]:
+        """What has happened so far."""
+        return self.lookout.happened
+
+    @property
+    def pending(self) -> int:
+        """How many rows are in memory."""
+        return len(self.rows)
+
+    @property
+    def can_go_on(self) -> bool:
+        """Whether nothing has ended it but the end of its time, or Ctrl-C."""
+        return self.ended in ("completed", "interrupted")
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Return what the rest of the run depends on, after `take_rows`: SciPy's solver between two of its steps."""
+        under_way = self.solver is not None and self.solver.status == "running"
+        return {
+            "y": self.y,
+            "last_row": self.last_row,
+            "watch": self.watch.array.copy(),
+            "solver": {name: getattr(self.solver, name) for name in OF_SOLVER} if under_way else {},
+            "lookout": self.lookout.checkpoint(),
+            **{name: getattr(self, name) for name in CHECKPOINT},
+        }
+
+    def restore(self, checkpoint: dict[str, Any], happened: Sequence[Happening]) -> None:
+        """Go on from a checkpoint of a run with the same beginning; the rows before it are not made again."""
+        self.y, self.last_row, self.continued = (checkpoint[name] for name in ("y", "last_row", "solver"))
+        self.watch.array[:] = checkpoint["watch"]
+        self.lookout.restore(checkpoint["lookout"], happened)
+        for name in CHECKPOINT:
+            setattr(self, name, checkpoint[name])
+        self.rows, self.taken = [], self.saved
+
+    def outcome(self, rows: tuple[Floats, Motion] | None = None) -> Outcome:
+        """Return what has been computed: the rows in memory, or those that were taken before."""
+        time, motion = rows or self.take_rows()
         happened = self.lookout.happened
         then = np.array([one.time - self.begin for one in happened])
+        watch, closest_time = self.lookout.with_closest(self.watch, self.closest_time)
         return Outcome(
-            time=self.begin + times,
-            motion=self._motion(self.rows, times),
+            time=time,
+            motion=motion,
             occurrences=occurrences(happened, self._motion([one.variables for one in happened], then)),
-            watch=self.watch,
-            closest_time=self.begin + self.closest_time,
+            watch=watch,
+            closest_time=self.begin + closest_time,
             status=self.ended,
             message=self.message,
             steps=self.steps,

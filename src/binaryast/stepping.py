@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Sequence
 from math import inf, pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from astropy.time import TimeDelta
@@ -30,15 +30,19 @@ from binaryast.outcome import (
 )
 from binaryast.perturbations.base import Span
 from binaryast.progress import keyboard
+from binaryast.run_file import ROWS_AT_ONCE
 from binaryast.schedule import SLACK, Segment
 from binaryast.state import State
 from binaryast.system import System
 from binaryast.units import Floats, brief
 from binaryast.watchlist import Watchlist
+from binaryast.working import Motion
 from binaryast.working.base import coinciding
 
 CHUNK_SECONDS = 0.1  # between two looks at the keyboard
 GROWTH, MOST_AT_ONCE = 8, 500_000  # of steps between two looks, whatever the clock says
+CHECKPOINT = ("segment", "kept", "elapsed", "steps", "closest_time", "energy_error", "wall_time")
+LOOKED_BACK = 2  # steps within which an event may be found that ends the run before them
 
 
 def turn_error(name: str, spin: float, integrator: Stepping, step: float) -> StepError:
@@ -53,6 +57,20 @@ def turn_error(name: str, spin: float, integrator: Stepping, step: float) -> Ste
         f"{turned}; the implicit equation (128) has a solution only below {integrator.largest_turn:.4g}{scheme}: the "
         f"step must be below {integrator.largest_turn / spin:.6g} s, got {step:g} s; ba.Splitting has no such limit"
     )
+
+
+class Place(NamedTuple):
+    """Where in a run something is: in which segment, when that began, and after how many of its steps."""
+
+    segment: Segment
+    begin: float
+    steps: int
+
+    @property
+    def row_time(self) -> float:
+        """When the row before the last step to there was saved."""
+        stride = self.segment.stride
+        return self.begin + max(0, self.steps - 1) // stride * stride * self.segment.step
 
 
 class SteppedRun:
@@ -83,12 +101,16 @@ class SteppedRun:
         self.happened: list[Happening] = []
         self.stopped: Event | None = None
         self.watch = Watch()
+        self.of_rows = Watch()  # rows in changed variables, after they were changed back
         self.rows: list[Floats] = [self._row()]
         self.times: list[Floats] = [np.zeros(1)]
         self.code = status.COMPLETED
         self.pressed: list[int] = []
         self.raised, self.gone = "", 0.0  # gone: how far into the last step the run ends [s]
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
+        self.segment, self.kept, self.energy_error = 0, 0, 0.0  # kept: rows of the segment taken out of its window
+        self.window: Floats | None = None
+        self.landmarks: tuple[Floats, Floats] = (np.empty(0), np.empty((0, self.working.row_size)))
         self._begin()
 
     def _row(self) -> Floats:
@@ -103,7 +125,8 @@ class SteppedRun:
             raise overlap(self.system, touching - 1, position)
         if self.surfaces.any() and self._clearance(w.state, 0.0) < 0.0:
             raise overlap(self.system, self._nearest_pair(), position)
-        self.watch.begin(measures, float(w.state[w.potential_at]))
+        for watch in (self.watch, self.of_rows):
+            watch.begin(measures, float(w.state[w.potential_at]))
 
     def go(self, show: Callable[[float], None]) -> None:
         """Take all segments, as far as it goes.
@@ -114,28 +137,23 @@ class SteppedRun:
             Where the first step has no solution.
         """
         with keyboard() as self.pressed:
-            for segment in self.segments:
-                self._take(segment, show)
+            while self.segment < len(self.segments):
+                self._take(self.segments[self.segment], show)
                 if self.code != status.COMPLETED or self.pressed:
                     break
         if self.steps == 0 and status.NO_ROTATION <= self.code < status.CONTACT:
             raise self._turn_error()
 
     def _take(self, segment: Segment, show: Callable[[float], None]) -> None:
-        """Take one segment, in chunks short enough for the keyboard and the progress bar."""
-        rows = np.empty((segment.steps // segment.stride, self.working.row_size))
-        self.rows.append(rows)
+        """Take one segment, or the rest of it, in chunks short enough for the keyboard and the progress bar."""
         watch = self.watch.array
-        energy_error = float(watch[loop.ENERGY_ERROR])
-        watch[loop.STEPS] = 0
-        if self.lookout is not None:
-            self.lookout.start(segment, self.elapsed, watch)
-        if self.integrator.changed is not None:
-            self._change(self.integrator.changed.shares, segment.step)
+        if not watch[loop.STEPS]:
+            self._begin_segment(segment)
         chunk = 16
         while (left := segment.steps - int(watch[loop.STEPS])) and self.code == status.COMPLETED and not self.pressed:
             began = time.perf_counter()
-            count = min(chunk, left)
+            rows = self._window(segment)
+            count = min(chunk, left, self._room(segment))
             self.code = self._advance(segment, count, rows)
             if self.code >= status.CONTACT:
                 self._look_closer(segment, rows)
@@ -145,10 +163,56 @@ class SteppedRun:
             self.wall_time += spent
             chunk = max(1, min(GROWTH * count, MOST_AT_ONCE, int(count * CHUNK_SECONDS / max(spent, 1e-6))))
             show(self.elapsed + watch[loop.STEPS] * segment.step)
+        self._take_out(segment, int(watch[loop.STEPS]))
         if self.integrator.changed is not None:
-            watch[loop.ENERGY_ERROR] = energy_error
-            self._change_back(-self.integrator.changed.shares[::-1], segment)
+            self._merge(self.of_rows)
+            self._change(-self.integrator.changed.shares[::-1], segment.step)
         self._keep(segment)
+
+    def _begin_segment(self, segment: Segment) -> None:
+        """Have events looked for anew, and change the variables."""
+        if self.lookout is not None:
+            self.lookout.start(segment, self.elapsed, self.watch.array)
+        if self.integrator.changed is not None:
+            self.energy_error = float(self.watch.array[loop.ENERGY_ERROR])
+            self._change(self.integrator.changed.shares, segment.step)
+
+    def _window(self, segment: Segment) -> Floats:
+        """Return where the loop puts its rows, a ring: not room for all of a segment, so that memory stays flat."""
+        if self.window is None:
+            self.window = np.empty((min(segment.steps // segment.stride, ROWS_AT_ONCE), self.working.row_size))
+        elif self._room(segment) <= LOOKED_BACK * segment.stride:
+            self._take_out(segment, self._settled())
+        return self.window
+
+    def _room(self, segment: Segment) -> int:
+        """Return for how many steps there is room in the window."""
+        if self.window is None or self.kept + len(self.window) >= segment.steps // segment.stride:
+            return segment.steps
+        return (self.kept + len(self.window)) * segment.stride - int(self.watch.array[loop.STEPS])
+
+    def _settled(self) -> int:
+        """Return up to which step of the segment the motion stays as it is, whatever event is found yet."""
+        return max(0, int(self.watch.array[loop.STEPS]) - (0 if self.lookout is None else LOOKED_BACK))
+
+    def _take_out(self, segment: Segment, steps: int) -> None:
+        """Take rows up to a step of the segment out of the window, with their times."""
+        rows = self._in_window(segment, steps)
+        if not len(rows):
+            return
+        if self.integrator.changed is not None:
+            self._change_back(-self.integrator.changed.shares[::-1], segment.step, rows)
+        self.rows.append(rows)
+        numbers = np.arange(self.kept + 1, self.kept + len(rows) + 1)
+        self.times.append(self.elapsed + numbers * (segment.stride * segment.step))
+        self.kept += len(rows)
+
+    def _in_window(self, segment: Segment, steps: int) -> Floats:
+        """Return the rows up to a step of the segment that are in the window yet."""
+        numbers = np.arange(self.kept, steps // segment.stride)
+        if self.window is None or not len(numbers):
+            return np.empty((0, self.working.row_size))
+        return self.window[numbers % len(self.window)]
 
     def _change(self, shares: Floats, step: float) -> None:
         """Change the variables of the working state, or change them back."""
@@ -158,18 +222,25 @@ class SteppedRun:
         )
         self.code = self.code or code
 
-    def _change_back(self, shares: Floats, segment: Segment) -> None:
-        """Change the variables of the rows of a segment and of the state at its end back, and watch their energy."""
+    def _change_back(self, shares: Floats, step: float, rows: Floats) -> None:
+        """Change the variables of rows back, and watch them; the state stays in the changed ones."""
         w = self.working
-        end, rows = w.state.copy(), self.rows[-1]
-        for k in range(int(self.watch.array[loop.STEPS]) // segment.stride):
+        end = w.state.copy()
+        for k in range(len(rows)):
             w.state[:] = 0
             w.state[: w.row_size] = rows[k]
-            self._change(shares, segment.step)
-            self.watch.look(w.measure(w.state, w.constants))
+            self._change(shares, step)
+            self.of_rows.look(w.measure(w.state, w.constants))
             rows[k] = w.state[: w.row_size]
         w.state[:] = end
-        self._change(shares, segment.step)
+
+    def _merge(self, of_rows: Watch) -> None:
+        """Take in what was watched at rows; the energy of the steps between, in changed variables, says nothing."""
+        watch, rows = self.watch.array, of_rows.array
+        watch[loop.ENERGY_ERROR] = max(self.energy_error, rows[loop.ENERGY_ERROR])
+        errors = slice(loop.ANGULAR_ERROR, loop.CLOSEST)
+        watch[errors] = np.maximum(watch[errors], rows[errors])
+        watch[loop.CLOSEST] = min(watch[loop.CLOSEST], rows[loop.CLOSEST])
 
     def _clearance(self, origin: Floats, after: float) -> float:
         """Return the smallest clearance of all pairs a time after a state."""
@@ -299,30 +370,106 @@ class SteppedRun:
         )
 
     def _keep(self, segment: Segment) -> None:
-        """Close a segment: its saved rows with their times, and the last state where that is not one of them."""
+        """Close a segment, with the last state as a row where that is not one yet."""
         watch = self.watch.array
         done = int(watch[loop.STEPS])
-        saved = done // segment.stride
-        self.rows[-1] = self.rows[-1][:saved]
-        self.times.append(self.elapsed + np.arange(1, saved + 1) * (segment.stride * segment.step))
         if done % segment.stride or self.gone:
             self.rows.append(self._row())
             self.times.append(np.array([self.elapsed + done * segment.step + self.gone]))
-        if watch[loop.CLOSEST_STEP]:
-            self.closest_time = self.elapsed + watch[loop.CLOSEST_STEP] * segment.step
-            watch[loop.CLOSEST_STEP] = 0
+        self.closest_time, watch[loop.CLOSEST_STEP] = self._closest(), 0
         self.elapsed += done * segment.step + self.gone
         self.steps += done
+        self.segment += 1
+        self.kept, watch[loop.STEPS], self.window = 0, 0, None
 
-    def outcome(self) -> Outcome:
-        """Return what has been computed."""
-        rows, times = np.concatenate(self.rows), np.concatenate(self.times)
+    def _closest(self) -> float:
+        """Return when the bodies were closest so far, since the start of the leg."""
+        step = self.watch.array[loop.CLOSEST_STEP]
+        return self.elapsed + float(step) * self.segments[self.segment].step if step else self.closest_time
+
+    def take_rows(self) -> tuple[Floats, Motion]:
+        """Return the rows that have been saved since the last call, with their times; they are kept no longer."""
+        if self.segment < len(self.segments):
+            self._take_out(self.segments[self.segment], self._settled())
+        rows = np.concatenate([np.empty((0, self.working.row_size)), *self.rows])
+        times = np.concatenate([np.empty(0), *self.times])
+        self.landmarks = self._landmarks()
+        self.rows, self.times = [], []
+        return self.begin + times, self.working.from_rows(rows, times)
+
+    def _landmarks(self) -> tuple[Floats, Floats]:
+        """Return two rows that are kept, with their times: that before the closest approach so far, and the last."""
+        times = np.concatenate([self.landmarks[0], *self.times])
+        rows = np.concatenate([self.landmarks[1], *self.rows])
+        place = self.place_of_closest()
+        chosen = [len(times) - 1] if place is None else [int(np.argmin(np.abs(times - place.row_time))), len(times) - 1]
+        return times[chosen], rows[chosen]
+
+    def place_of_closest(self) -> Place | None:
+        """Return where the closest approach is, None where there is no step."""
+        begin, closest = 0.0, self._closest()
+        for segment in self.segments:
+            steps = round((closest - begin) / segment.step)
+            if steps <= segment.steps and self.elapsed + self.watch.array[loop.STEPS] > 0.0:
+                return Place(segment, begin, steps)
+            begin += segment.steps * segment.step
+        return None
+
+    def row_before(self, place: Place) -> Floats | None:
+        """Return the row before the last step to a place, None where it is not kept."""
+        times, rows = self._landmarks()
+        nearest = int(np.argmin(np.abs(times - place.row_time)))
+        return rows[nearest] if abs(times[nearest] - place.row_time) < 0.5 * place.segment.step else None
+
+    @property
+    def pending(self) -> int:
+        """About how many rows are in memory."""
+        return sum(len(rows) for rows in self.rows)
+
+    @property
+    def can_go_on(self) -> bool:
+        """Whether nothing has ended it but the end of its time, or Ctrl-C."""
+        return self.code == status.COMPLETED
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Return what the rest of the run depends on, after `take_rows`: the working state, and where it is."""
+        segment = self.segments[min(self.segment, len(self.segments) - 1)]
+        return {
+            "state": self.working.state.copy(),
+            "watch": self.watch.array.copy(),
+            "of_rows": self.of_rows.array.copy(),
+            "window": self._in_window(segment, int(self.watch.array[loop.STEPS])),
+            "landmarks": self.landmarks,
+            "lookout": {} if self.lookout is None else self.lookout.checkpoint(),
+            **{name: getattr(self, name) for name in CHECKPOINT},
+        }
+
+    def restore(self, checkpoint: dict[str, Any], happened: Sequence[Happening]) -> None:
+        """Go on from a checkpoint of a run with the same beginning; the rows before it are not made again."""
+        self.working.state[:] = checkpoint["state"]
+        self.watch.array[:] = checkpoint["watch"]
+        self.of_rows.array[:] = checkpoint["of_rows"]
+        for name in CHECKPOINT:
+            setattr(self, name, checkpoint[name])
+        self.rows, self.times, self.landmarks = [], [], checkpoint["landmarks"]
+        self.happened = list(happened)
+        if self.segment < len(self.segments):
+            segment = self.segments[self.segment]
+            rows = checkpoint["window"]
+            for number, row in enumerate(rows, start=self.kept):
+                self._window(segment)[number % len(self._window(segment))] = row
+            if self.lookout is not None:
+                self.lookout.restore(checkpoint["lookout"], segment, self.elapsed)
+
+    def outcome(self, rows: tuple[Floats, Motion] | None = None) -> Outcome:
+        """Return what has been computed: the rows in memory, or those that were taken before."""
+        time, motion = rows or self.take_rows()
         ended, message = self._end()
         return Outcome(
-            time=self.begin + times,
-            motion=self.working.from_rows(rows, times),
+            time=time,
+            motion=motion,
             watch=self.watch,
-            closest_time=self.begin + self.closest_time,
+            closest_time=self.begin + self._closest(),
             status=ended,
             message=message,
             steps=self.steps,

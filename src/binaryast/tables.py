@@ -1,7 +1,7 @@
 """Tables of a TOML file: which keys they may have, and their values as the arguments of a constructor."""
 
 import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from datetime import UTC, datetime
 from typing import Any
 
@@ -61,12 +61,57 @@ EXAMPLES = {  # what a text with a unit looks like
 }
 
 
-def call(function: Callable[..., Any], ready: dict[str, Any], arguments: dict[str, Any], where: str) -> Any:
-    """Call a constructor with arguments from a file, after a look at their names."""
+class MistakesError(InputError):
+    """Several things that are wrong with a file, each in a line of its own."""
+
+    def __init__(self, found: Sequence[str]) -> None:
+        super().__init__(" | ".join(found))
+        self.found = list(found)
+
+
+class Found:
+    """What has been found wrong so far: a file is looked at as a whole before anything is said."""
+
+    def __init__(self) -> None:
+        self.mistakes: list[str] = []
+
+    def attempt(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Return what a function returns, or None and take note of what it finds wrong."""
+        try:
+            return function(*arguments)
+        except InputError as error:
+            self.mistakes += error.found if isinstance(error, MistakesError) else [str(error)]
+            return None
+
+    def said(self) -> None:
+        """Raise where there is something to say."""
+        if len(self.mistakes) == 1:
+            raise InputError(self.mistakes[0])
+        if self.mistakes:
+            raise MistakesError(self.mistakes)
+
+
+def call(
+    function: Callable[..., Any],
+    ready: dict[str, Any],
+    arguments: dict[str, Any],
+    where: str,
+    *,
+    only_look: bool = False,
+) -> Any:
+    """Call a constructor with arguments from a file, after a look at their names and values; or only look at them."""
+    found = Found()
     parameters = [p for p in inspect.signature(function).parameters.values() if p.name not in ready]
-    check_known(arguments, [p.name for p in parameters], f"{where}.")
-    check_needed(arguments, [p.name for p in parameters if p.default is inspect.Parameter.empty], f"{where}.")
-    given = {key: argument(value, key, f"{where}.{key}") for key, value in arguments.items()}
+    known = [p.name for p in parameters]
+    needed = [p.name for p in parameters if p.default is inspect.Parameter.empty]
+    found.attempt(check_keys, arguments, known, needed, f"{where}.")
+    given = {}
+    for key, value in arguments.items():
+        if key in known:
+            given[key] = found.attempt(argument, value, key, f"{where}.{key}")
+    found.said()
+    if only_look:
+        return None
     try:
         return function(**ready, **given)
     except InputError as error:
@@ -136,18 +181,15 @@ def choice(table: dict[str, Any], choices: Iterable[str], where: str) -> str:
     return kind
 
 
-def check_known(table: dict[str, Any], keys: Iterable[str], where: str) -> None:
-    """Raise for the first key that is not known, naming the nearest."""
-    keys = list(keys)
-    for key in table:
-        if key not in keys:
-            raise InputError(
-                f"{where}{key}: unknown key{did_you_mean(key, keys)}; known are {', '.join(keys) or 'none'}"
-            )
-
-
-def check_needed(table: dict[str, Any], keys: Iterable[str], where: str) -> None:
-    """Raise for the first key that is missing."""
-    for key in keys:
-        if key not in table:
-            raise InputError(f"{where}{key} is missing")
+def check_keys(table: dict[str, Any], known: Iterable[str], needed: Iterable[str], where: str) -> None:
+    """Raise for keys that are not known, naming the nearest, and for those that are missing."""
+    keys, found = list(known), Found()
+    unknown = [key for key in table if key not in keys]
+    for key in unknown:
+        hint = did_you_mean(key, keys)
+        found.mistakes.append(f"{where}{key}: unknown key{hint}; known are {', '.join(keys) or 'none'}")
+    meant = " ".join(did_you_mean(key, keys) for key in unknown)
+    for key in needed:
+        if key not in table and repr(key) not in meant:  # one that is misspelt is not missing too
+            found.mistakes.append(f"{where}{key} is missing")
+    found.said()

@@ -13,13 +13,14 @@ from astropy.time import Time, TimeDelta
 from astropy.units import Quantity
 from scipy.spatial.transform import Rotation
 
-from binaryast import dense, storage, summaries
+from binaryast import dense, run_file, storage, summaries
 from binaryast.errors import CheckError, InputError, InterpolationWarning, StepWarning
 from binaryast.events import Event
 from binaryast.impulses import AnyImpulse
 from binaryast.integrators import Integrator
 from binaryast.occurrences import Occurrence, OccurrenceFloats
 from binaryast.rotations import ROTATION_TOLERANCE
+from binaryast.run_file import pieces_of
 from binaryast.state import RelativeState, State
 from binaryast.system import System
 from binaryast.units import Floats, as_quantity, brief, checked, numbers, quantity, span, to_si
@@ -58,7 +59,13 @@ FIGURES = {  # of the whole run, over every step; with their units
     "estimated_error": "",
 }
 DOUBTFUL_INTERPOLATION = 1e-5
-OCCURRENCE_UNITS = dict(zip(OccurrenceFloats._fields, ("", "s", "", "m", "m / s", "", "rad / s"), strict=True))
+ROUND_OFF = 1e-12  # ||I - R^T R|| above which a state that is taken from a run has the nearest rotations
+ABOUT = ("status", "message", "steps", "step", "frame", "wall_time", "choice", *FIGURES)  # the run as a whole
+DATASETS = (  # with a row for each time
+    *("time", "position", "velocity", "attitude", "spin", "potential_energy"),
+    *("energy", "linear_momentum", "angular_momentum", "rotation_error"),
+)
+GIVEN = ("work", "impulse", "angular_impulse")  # of a run with perturbations
 SOMETIMES = ("max_next_degree_term", "accuracy", "estimated_error")  # None of some runs, and in older files
 
 
@@ -183,7 +190,8 @@ class Trajectory(Value):
                 StepWarning,
                 stacklevel=2,
             )
-        attitude = self._rotations[index]
+        attitude = self.si.attitude[index]
+        attitude = _nearest_rotations(attitude) if error > ROUND_OFF else attitude
         return State(self.position[index], self.velocity[index], attitude, self.spin[index], epoch, self.frame)
 
     @cached_property
@@ -577,42 +585,27 @@ class Trajectory(Value):
         StorageError
             Where the file exists and ``force`` is not set, or it cannot be written.
         """
-        datasets = {
-            "time": self.time,
-            "position": self.position,
-            "velocity": self.velocity,
-            "attitude": self.attitude,
-            "spin": self.spin,
-            "potential_energy": self.potential_energy,
-            "energy": self.energy,
-            "linear_momentum": self.linear_momentum,
-            "angular_momentum": self.angular_momentum,
-            "rotation_error": self.rotation_error,
-        }
-        if self.system.perturbations:
-            datasets |= {"work": self.work, "impulse": self.impulse, "angular_impulse": self.angular_impulse}
-        attributes = {
-            "status": self.status,
-            "message": self.message,
-            "steps": self.steps,
-            "step": self.step.value,
-            "frame": self.frame,
-            "wall_time": self.wall_time.value,
-            "choice": self.choice,
-        }
-        figures = {name: getattr(self, name) for name in FIGURES}
-        attributes |= {name: getattr(figure, "value", figure) for name, figure in figures.items() if figure is not None}
+        pieces = (self._rows(slice(*piece)).datasets() for piece in pieces_of(len(self)))
+        return storage.write(storage.as_path(path), self.content(), len(self), pieces, force=force)
+
+    def datasets(self) -> dict[str, Any]:
+        """Return what a file has a row of for each time, by name."""
+        return {name: getattr(self, name) for name in (*DATASETS, *(GIVEN if self.system.perturbations else ()))}
+
+    def attributes(self) -> dict[str, Any]:
+        """Return what is said of the run as a whole, in SI, by name."""
+        figures = {name: getattr(self, name) for name in ABOUT}
+        return {name: getattr(figure, "value", figure) for name, figure in figures.items() if figure is not None}
+
+    def content(self) -> storage.Content:
+        """Return what a file holds beside `datasets`."""
         values = {"system": self.system, "integrator": self.integrator, "epoch": self.epoch}
         values |= {"impulses": self.impulses} if self.impulses else {}
+        datasets: dict[str, Any] = {}
         if self.watched and self.occurrences is not None:
             values["watched"] = self.watched
-            datasets |= {
-                f"events_{name}": quantity(array, unit) if unit else array
-                for (name, unit), array in zip(OCCURRENCE_UNITS.items(), self.occurrences, strict=True)
-            }
-        return storage.write(
-            storage.as_path(path), storage.Content(datasets, attributes, values, self.provenance), force=force
-        )
+            datasets = self.occurrences.datasets()
+        return storage.Content(datasets, self.attributes(), values, self.provenance)
 
     @classmethod
     def read(cls, path: str | Path, *, verify: bool = True) -> "Trajectory":
@@ -635,40 +628,45 @@ class Trajectory(Value):
             Where the file is missing, broken, or not one of ours.
         """
         path = storage.as_path(path)
-        content = storage.read(path, verify=verify)
-        attributes: dict[str, Any] = dict.fromkeys(SOMETIMES) | {"choice": ""} | content.attributes
+        content = run_file.with_rows(path, storage.read(path, verify=verify), verify=verify)
         try:
-            return cls(
-                system=content.values["system"],
-                integrator=content.values["integrator"],
-                si=_floats(content.datasets, len(content.values["system"].bodies)),
-                epoch=content.values.get("epoch"),
-                frame=str(attributes["frame"]),
-                status=str(attributes["status"]),
-                message=str(attributes["message"]),
-                steps=int(attributes["steps"]),
-                step=quantity(float(attributes["step"]), "s"),
-                wall_time=quantity(float(attributes["wall_time"]), "s"),
-                provenance=content.provenance,
-                choice=str(attributes["choice"]),
-                impulses=content.values.get("impulses", ()),
-                watched=content.values.get("watched", ()),
-                occurrences=_occurrences(content.datasets, content.values),
-                **{
-                    name: quantity(attributes[name], unit) if unit else attributes[name]
-                    for name, unit in FIGURES.items()
-                },
-            )
+            return cls.of_content(content)
         except KeyError as error:
             raise storage.broken(path, f"{error.args[0]} is missing") from None
         except Exception as error:  # a file that was changed can hold anything
             raise storage.broken(path, brief(error)) from None
 
+    @classmethod
+    def of_content(cls, content: storage.Content) -> "Trajectory":
+        """Return the run that the content of a file tells of; it raises whatever comes to what is none."""
+        attributes: dict[str, Any] = dict.fromkeys(SOMETIMES) | {"choice": ""} | content.attributes
+        return cls(
+            system=content.values["system"],
+            integrator=content.values["integrator"],
+            si=_floats(content.datasets, len(content.values["system"].bodies)),
+            epoch=content.values.get("epoch"),
+            frame=str(attributes["frame"]),
+            status=str(attributes["status"]),
+            message=str(attributes["message"]),
+            steps=int(attributes["steps"]),
+            step=quantity(float(attributes["step"]), "s"),
+            wall_time=quantity(float(attributes["wall_time"]), "s"),
+            provenance=content.provenance,
+            choice=str(attributes["choice"]),
+            impulses=content.values.get("impulses", ()),
+            watched=content.values.get("watched", ()),
+            occurrences=OccurrenceFloats.of_datasets(content.datasets, len(content.values["system"].bodies)),
+            **{name: quantity(attributes[name], unit) if unit else attributes[name] for name, unit in FIGURES.items()},
+        )
+
 
 def nearest_rotations(r: Floats) -> Floats:
-    """Return attitudes (.., 3, 3) as they are, or the rotations nearest to them where they are none."""
-    if not np.any(_rotation_errors(r) > ROTATION_TOLERANCE):
-        return r
+    """Return attitudes (.., 3, 3) as they are, or the rotations nearest to them where one of them is none."""
+    return _nearest_rotations(r) if np.any(_rotation_errors(r) > ROTATION_TOLERANCE) else r
+
+
+def _nearest_rotations(r: Floats) -> Floats:
+    """Return the rotations nearest to matrices (..., 3, 3)."""
     matrices = r.reshape(-1, 3, 3).copy()  # SciPy below 1.15 takes no read-only array
     return np.asarray(Rotation.from_matrix(matrices).as_matrix().reshape(r.shape))
 
@@ -700,17 +698,9 @@ def _floats(datasets: dict[str, Any], count: int) -> TrajectoryFloats:
     }
     datasets = nothing_given(rows) | datasets  # as in the file of a run without perturbations
     arrays = {name: np.asarray(datasets[name], dtype=np.float64) for name in shapes}
-    return TrajectoryFloats(*(checked(arrays[name], name, shape) for name, shape in shapes.items()))
-
-
-def _occurrences(datasets: dict[str, Any], values: dict[str, Any]) -> OccurrenceFloats:
-    """Return what happened of a file, nothing where it does not say."""
-    count = len(values["system"].bodies)
-    if "events_time" not in datasets:
-        return OccurrenceFloats.none(count)
-    number = len(datasets["events_time"])
-    vectors = (number, count, 3)
-    shapes = ((number,), (number,), (number,), vectors, vectors, (*vectors, 3), vectors)
-    arrays = {name: np.asarray(datasets[f"events_{name}"], dtype=np.float64) for name in OCCURRENCE_UNITS}
-    found = (checked(array, name, shape) for (name, array), shape in zip(arrays.items(), shapes, strict=True))
-    return OccurrenceFloats(*found)
+    for name, shape in shapes.items():
+        if arrays[name].shape != shape:
+            checked(arrays[name], name, shape)
+        for begin, end in pieces_of(rows):
+            checked(arrays[name][begin:end], name, (end - begin, *shape[1:]))
+    return TrajectoryFloats(**arrays)

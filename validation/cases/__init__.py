@@ -26,6 +26,7 @@ from validation.cases import (
     spacecraft,
     sphere_ellipsoid,
     sun,
+    survival,
     synchronous,
     tides,
     triple,
@@ -61,4 +62,5 @@ ALL: tuple[Case, ...] = (
     spacecraft.CASE,
     tides.CASE,
     perturbations.CASE,
+    survival.CASE,
 )

@@ -73,9 +73,9 @@ def advance(
     """Take ``count`` steps of h.
 
     The number of steps done is kept in ``watch``; after every ``stride``-th of them the start of the state goes into
-    the next of ``rows``, the row of step k being k/stride - 1. Whether surfaces touch is looked at all along the way of
-    each step. ``before`` keeps the state before a step. Returns a status; a step that goes wrong or in which bodies
-    seem to touch is not taken: the state is that before it.
+    the next of ``rows``, the row of step k being k/stride - 1, and after the last of them into the first again. Whether
+    surfaces touch is looked at all along the way of each step. ``before`` keeps the state before a step. Returns a
+    status; a step that goes wrong or in which bodies seem to touch is not taken: the state is that before it.
     """
     for _ in range(count):
         for i in range(before.size):
@@ -107,7 +107,7 @@ def advance(
             watch[CLOSEST_STEP] = watch[STEPS]
         done = int(watch[STEPS])
         if done % stride == 0:
-            row = done // stride - 1
+            row = (done // stride - 1) % rows.shape[0]
             for i in range(rows.shape[1]):
                 rows[row, i] = state[i]
     return COMPLETED

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -9,11 +10,11 @@ from binaryast.arcs import Arc, ArcLookout
 from binaryast.errors import InputError
 from binaryast.events import Event
 from binaryast.integrators import Taylor
-from binaryast.kernels import loop
 from binaryast.kernels.bodies import layout
 from binaryast.kernels.bodies.looking import view
 from binaryast.occurrences import OccurrenceFloats
 from binaryast.outcome import (
+    Happening,
     Outcome,
     Watch,
     contact_message,
@@ -31,9 +32,11 @@ from binaryast.taylor import compiled
 from binaryast.taylor.motion import Formulas
 from binaryast.units import Floats
 from binaryast.watchlist import Places, Watchlist
+from binaryast.working import Motion
 from binaryast.working.base import coinciding
 from binaryast.working.bodies import WorkingBodies
 
+CHECKPOINT = ("saved", "steps", "elapsed", "closest_time", "wall_time")
 SMALLEST_STEP = 1e-15  # over the time since the start: smaller ones lead nowhere
 
 
@@ -51,7 +54,7 @@ class TaylorRun:
         self.ended, self.message = "completed", ""
         self.pressed: list[int] = []
         self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
-        self.rows = [self._row()]
+        self.rows, self.saved, self.taken = [self._row()], 1, 0  # in memory; how many there are, and were taken
         self.formulas = Formulas(system, state, self.working)
         self.lookout = ArcLookout(Watchlist(events, system, state), self.working.surfaces, leg.begin, self._see)
         self._begin(state)
@@ -80,33 +83,39 @@ class TaylorRun:
                 show(self.elapsed)
                 if self.pressed and self.ended == "completed" and self.elapsed < self.end:
                     self.ended, self.message = "interrupted", interruption_message(self.begin + self.elapsed)
-        if self.times[len(self.rows) - 1] != self.elapsed:  # what ended the run is not one of its rows
-            self.times = np.append(self.times[: len(self.rows)], self.elapsed)
+        if self.times[self.saved - 1] != self.elapsed:  # what ended the run is not one of its rows
+            self.times = np.append(self.times[: self.saved], self.elapsed)
             self._put(self.y)
             self.working.exert()
-            self.rows.append(self._row())
+            self._save()
+
+    def _save(self) -> None:
+        """Keep what is in the working state as a row."""
+        self.rows.append(self._row())
+        self.saved += 1
 
     def _step(self) -> None:
         """Take one step, look at what lies in it, and save the rows that it passes."""
-        saved = len(self.rows)
+        saved = self.saved
         try:
             reached = self._advance()
             walked = self.lookout.walk(Arc(self.elapsed, reached, self.y, self.integrator.state.copy(), self._at))
             end, y = walked.end, walked.variables
             self._look(end, y)
-            while len(self.rows) < len(self.times) and self.times[len(self.rows)] < end:
-                due = float(self.times[len(self.rows)])
+            while self.saved < len(self.times) and self.times[self.saved] < end:
+                due = float(self.times[self.saved])
                 self._look(due, self._at(due))
-                self.rows.append(self._row())
+                self._save()
         except InputError as error:
-            del self.rows[saved:]
+            del self.rows[len(self.rows) - (self.saved - saved) :]
+            self.saved = saved
             self.ended, self.message = "failed", f"{error}; the last good row is at {self.begin + self.elapsed:g} s"
             return
         self.y, self.elapsed = y, end
         self.steps += 1
-        if len(self.rows) < len(self.times) and self.times[len(self.rows)] == end:
+        if self.saved < len(self.times) and self.times[self.saved] == end:
             self._look(end, y)
-            self.rows.append(self._row())
+            self._save()
         if walked.pair is not None:
             self.ended, self.message = "contact", contact_message(self.system, walked.pair, self.begin + end)
         if walked.event is not None:
@@ -158,17 +167,60 @@ class TaylorRun:
         times = np.array([one.time - self.begin for one in self.lookout.happened])
         return occurrences(self.lookout.happened, self.working.from_rows(rows, times))
 
-    def outcome(self) -> Outcome:
-        """Return what has been computed."""
-        times = self.times[: len(self.rows)].copy()
-        if self.lookout.closest < self.watch.array[loop.CLOSEST]:
-            self.watch.array[loop.CLOSEST], self.closest_time = self.lookout.closest, self.lookout.closest_time
+    def take_rows(self) -> tuple[Floats, Motion]:
+        """Return the rows that have been saved since the last call, with their times; they are kept no longer."""
+        times = self.times[self.taken : self.saved].copy()
+        rows = np.array(self.rows).reshape(-1, self.working.row_size)
+        self.rows, self.taken = [], self.saved
+        return self.begin + times, self.working.from_rows(rows, times)
+
+    @property
+    def happened(self) -> list[Happening]:
+        """What has happened so far."""
+        return self.lookout.happened
+
+    @property
+    def pending(self) -> int:
+        """How many rows are in memory."""
+        return len(self.rows)
+
+    @property
+    def can_go_on(self) -> bool:
+        """Whether nothing has ended it but the end of its time, or Ctrl-C."""
+        return self.ended in ("completed", "interrupted")
+
+    def checkpoint(self) -> dict[str, Any]:
+        """Return what the rest of the run depends on, after `take_rows`: heyoka's variables and its time."""
+        return {
+            "y": self.y,
+            "state": self.integrator.state.copy(),
+            "time": np.array(self.integrator.dtime),
+            "watch": self.watch.array.copy(),
+            "lookout": self.lookout.checkpoint(),
+            **{name: getattr(self, name) for name in CHECKPOINT},
+        }
+
+    def restore(self, checkpoint: dict[str, Any], happened: Sequence[Happening]) -> None:
+        """Go on from a checkpoint of a run with the same beginning; the rows before it are not made again."""
+        self.y = checkpoint["y"]
+        self.integrator.state[:] = checkpoint["state"]
+        self.integrator.dtime = tuple(checkpoint["time"].tolist())
+        self.watch.array[:] = checkpoint["watch"]
+        self.lookout.restore(checkpoint["lookout"], happened)
+        for name in CHECKPOINT:
+            setattr(self, name, checkpoint[name])
+        self.rows, self.taken = [], self.saved
+
+    def outcome(self, rows: tuple[Floats, Motion] | None = None) -> Outcome:
+        """Return what has been computed: the rows in memory, or those that were taken before."""
+        time, motion = rows or self.take_rows()
+        watch, closest_time = self.lookout.with_closest(self.watch, self.closest_time)
         return Outcome(
+            time=time,
+            motion=motion,
             occurrences=self._occurrences(),
-            time=self.begin + times,
-            motion=self.working.from_rows(np.array(self.rows), times),
-            watch=self.watch,
-            closest_time=self.begin + self.closest_time,
+            watch=watch,
+            closest_time=self.begin + closest_time,
             status=self.ended,
             message=self.message,
             steps=self.steps,

@@ -36,8 +36,9 @@ class Motion(NamedTuple):
 
 
 def nothing_given(count: int) -> dict[str, Floats]:
-    """Return what was given from outside where there is nothing."""
-    return {"work": np.zeros(count), "impulse": np.zeros((count, 3)), "angular_impulse": np.zeros((count, 3))}
+    """Return what was given from outside where there is nothing: arrays of zeros that take no room, to be read only."""
+    shapes = {"work": (count,), "impulse": (count, 3), "angular_impulse": (count, 3)}
+    return {name: np.broadcast_to(0.0, shape) for name, shape in shapes.items()}
 
 
 def coinciding(system: System, position: Floats) -> int:
