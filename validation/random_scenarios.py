@@ -62,10 +62,62 @@ delta_v = "[0, -2.6, 0] mm / s"
 """
 
 
+OUTSIDE = """
+[[perturbations]]
+type = "Sun"
+orbit = { semi_major_axis = "1.64 AU", eccentricity = 0.38, mean_anomaly = "232 deg" }
+
+[[perturbations]]
+type = "Flyby"
+gm = "398600 km3 / s2"
+distance = "30000 km"
+speed = "8 km / s"
+time = "3 h"
+
+[[perturbations]]
+type = "TidalTorque"
+body = "A"
+raised_by = "B"
+love_number = 0.1
+quality_factor = 20
+
+[[perturbations]]
+type = "Yorp"
+body = "B"
+torque = "1 N m"
+
+[[events]]
+type = "Crossing"
+quantity = "radial_velocity"
+bodies = ["A", "B"]
+
+[[events]]
+type = "PlaneCrossing"
+normal = [1, 0, 0]
+accuracy = "1 ms"
+interval = "10 min"
+
+[[events]]
+type = "Separation"
+distance = "1.25 km"
+direction = 1
+terminal = true
+
+[[events]]
+type = "Escape"
+distance = "20 km"
+
+[[events]]
+type = "Contact"
+terminal = false
+"""
+
+
 def seeds() -> list[str]:
     """Return sound files to begin with, whose runs are short."""
     texts = [PLAIN, PLAIN.replace('step = "60 s"', "accuracy = 1e-6")]
-    for name in ("didymos", "dumbbells", "sn263"):
+    texts += [PLAIN + OUTSIDE, PLAIN.replace('step = "60 s"', "accuracy = 1e-6") + OUTSIDE]
+    for name in ("didymos", "dumbbells", "sn263", "cubesat"):
         lines = catalogue.text(name).splitlines()
         short = '"1 s"' if name == "dumbbells" else '"3 h"'
         texts.append("\n".join(f"duration = {short}" if line.startswith("duration") else line for line in lines))

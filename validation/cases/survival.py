@@ -9,15 +9,25 @@ from random import Random
 from validation import killing, random_scenarios
 from validation.case import Case, Check, Effort, Findings
 
-DAYS = {Effort.QUICK: 600, Effort.WHOLE: 4000, Effort.LONG: 20_000}  # of steps of 40 s
+DAYS = {Effort.QUICK: 600, Effort.WHOLE: 4000, Effort.LONG: 8000}  # of steps of 40 s
 KILLS = {Effort.QUICK: 1, Effort.WHOLE: 3, Effort.LONG: 20}
 FILES = {Effort.QUICK: 20, Effort.WHOLE: 200, Effort.LONG: 10_000}
 STEPS = {Effort.QUICK: 10**6, Effort.WHOLE: 10**7, Effort.LONG: 10**8}
 ROWS = 1000
 MOST_MEMORY = 400.0  # MB
-HOW = (
-    "duration={days} * u.day, save_every={days} / 900 * u.day, integrator=ba.LGVI(40 * u.s), "
-    "impulses=[ba.Impulse({days} / 3.1 * u.day, [0, 0, -2] * u.mm / u.s, 1)]"
+RUNS = (  # entry, days over those above, and how
+    (
+        "didymos",
+        1.0,
+        "duration={days} * u.day, save_every={days} / 900 * u.day, integrator=ba.LGVI(40 * u.s), "
+        "impulses=[ba.Impulse({days} / 3.1 * u.day, [0, 0, -2] * u.mm / u.s, 1)]",
+    ),
+    (  # three bodies, the Sun and its light
+        "cubesat",
+        0.02,
+        "duration={days} * u.day, save_every={days} / 900 * u.day, integrator=ba.Splitting(5 * u.min), "
+        'events=[ba.events.Crossing("radial_velocity", bodies=("Didymos", "Dimorphos"))]',
+    ),
 )
 MEMORY = """
 import resource, sys
@@ -34,17 +44,18 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024)
 
 def differing(folder: Path, effort: Effort) -> int:
     """Return of how many killed runs the final file differs in any bit from that of one without a stop."""
-    random, bad, k = Random(1), 0, 0
-    how = HOW.format(days=DAYS[effort])
-    expected = folder / "whole.h5"
-    lasts = killing.whole(expected, "didymos", how)
-    path = folder / "killed.h5"
-    while k < KILLS[effort]:
-        if killing.killed(path, "didymos", how, random.uniform(0.02, 0.98) * lasts):
-            killing.resumed(path)
-            bad += bool(killing.differences(expected, path))
-            path.unlink()
-            k += 1
+    random, bad = Random(1), 0
+    for k, (name, part, text) in enumerate(RUNS):
+        how = text.format(days=part * DAYS[effort])
+        expected, path = folder / f"whole{k}.h5", folder / "killed.h5"
+        lasts = killing.whole(expected, name, how)
+        kills = (KILLS[effort] + 1 - k) // len(RUNS)
+        while kills:
+            if killing.killed(path, name, how, random.uniform(0.02, 0.98) * lasts):
+                killing.resumed(path)
+                bad += bool(killing.differences(expected, path))
+                path.unlink()
+                kills -= 1
     return bad
 
 
