@@ -9,7 +9,7 @@ import pytest
 import binaryast as ba
 from binaryast import dense
 from binaryast.errors import InputError, InterpolationWarning, UnitError
-from binaryast.trajectory import TrajectoryFloats
+from binaryast.rows import TrajectoryFloats
 
 FINE = 100  # s
 

@@ -9,8 +9,9 @@ import numpy as np
 
 from binaryast.impulses import AnyImpulse
 from binaryast.occurrences import OccurrenceFloats
+from binaryast.rows import TrajectoryFloats
 from binaryast.schedule import Leg
-from binaryast.trajectory import FIGURES, Trajectory, TrajectoryFloats
+from binaryast.trajectory import FIGURES, Trajectory
 from binaryast.units import quantity
 
 

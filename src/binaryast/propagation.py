@@ -34,6 +34,7 @@ from binaryast.kernels.jit import source_hash
 from binaryast.outcome import Outcome, interruption_message
 from binaryast.progress import bar, said_if_long
 from binaryast.rates import rates
+from binaryast.rows import TrajectoryFloats
 from binaryast.run_file import pieces_of
 from binaryast.schedule import Leg, schedule
 from binaryast.state import State
@@ -41,7 +42,7 @@ from binaryast.stepping import SteppedRun, turn_error
 from binaryast.storage import as_path, refuse
 from binaryast.streaming import Memory
 from binaryast.system import Pair, System
-from binaryast.trajectory import Trajectory, TrajectoryFloats
+from binaryast.trajectory import Trajectory
 from binaryast.trials import Trials
 from binaryast.units import Floats, brief, numbers, quantity, span, to_si
 from binaryast.working.base import surfaces

@@ -11,9 +11,10 @@ from binaryast.errors import BinaryastWarning, InputError
 from binaryast.events import Contact
 from binaryast.integrators import Integrator
 from binaryast.propagation import follow_leg
+from binaryast.rows import TrajectoryFloats
 from binaryast.schedule import Leg
 from binaryast.state import State
-from binaryast.trajectory import Trajectory, TrajectoryFloats
+from binaryast.trajectory import Trajectory
 from binaryast.units import brief, quantity
 
 GIVEN = ("work", "impulse", "angular_impulse")  # from outside, since the start

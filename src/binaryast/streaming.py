@@ -14,9 +14,10 @@ from binaryast import run_file, storage
 from binaryast.errors import BinaryastError, StorageError
 from binaryast.occurrences import OccurrenceFloats
 from binaryast.outcome import Happening, Outcome
+from binaryast.rows import TrajectoryFloats
 from binaryast.run_file import ROWS_AT_ONCE, Column, RunFile, Stretch, joined_datasets, pieces_of
 from binaryast.schedule import Leg
-from binaryast.trajectory import Trajectory, TrajectoryFloats
+from binaryast.trajectory import Trajectory
 from binaryast.units import Floats
 from binaryast.working import Motion
 from binaryast.working.base import nothing_given

@@ -2,48 +2,33 @@
 
 import operator
 import warnings
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, SupportsIndex, overload
+from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 import numpy as np
 from astropy.time import Time, TimeDelta
 from astropy.units import Quantity
 from scipy.spatial.transform import Rotation
 
-from binaryast import dense, run_file, storage, summaries
-from binaryast.errors import CheckError, InputError, InterpolationWarning, StepWarning
+from binaryast import run_file, storage, summaries
+from binaryast.between import Between
+from binaryast.errors import CheckError, InputError, StepWarning
 from binaryast.events import Event
 from binaryast.impulses import AnyImpulse
 from binaryast.integrators import Integrator
 from binaryast.occurrences import Occurrence, OccurrenceFloats
 from binaryast.rotations import ROTATION_TOLERANCE
+from binaryast.rows import TrajectoryFloats, floats_of, nearest_rotations, rotation_errors, rotations_of
 from binaryast.run_file import pieces_of
 from binaryast.state import RelativeState, State
 from binaryast.system import System
-from binaryast.units import Floats, as_quantity, brief, checked, numbers, quantity, span, to_si
+from binaryast.units import Floats, brief, numbers, quantity
 from binaryast.values import Value
-from binaryast.working.base import nothing_given
 
 if TYPE_CHECKING:
     from astropy.table import QTable
-
-
-class TrajectoryFloats(NamedTuple):
-    """The arrays of a trajectory as plain SI floats; the last three are what came from outside since the start."""
-
-    time: Floats
-    position: Floats
-    velocity: Floats
-    attitude: Floats
-    spin: Floats
-    potential_energy: Floats
-    work: Floats
-    impulse: Floats
-    angular_impulse: Floats
-
 
 FIGURES = {  # of the whole run, over every step; with their units
     "max_relative_energy_error": "",
@@ -58,7 +43,6 @@ FIGURES = {  # of the whole run, over every step; with their units
     "accuracy": "",  # None where an integrator was given
     "estimated_error": "",
 }
-DOUBTFUL_INTERPOLATION = 1e-5
 ROUND_OFF = 1e-12  # ||I - R^T R|| above which a state that is taken from a run has the nearest rotations
 ABOUT = ("status", "message", "steps", "step", "frame", "wall_time", "choice", *FIGURES)  # the run as a whole
 DATASETS = (  # with a row for each time
@@ -70,7 +54,7 @@ SOMETIMES = ("max_next_degree_term", "accuracy", "estimated_error")  # None of s
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory(Value):
+class Trajectory(Between, Value):
     """What `binaryast.propagate` returns.
 
     ``run[i]`` is a `State`, ``run[a:b]`` a `Trajectory` of those rows; `len` is the number of rows.
@@ -164,9 +148,6 @@ class Trajectory(Value):
         for array in self.si:
             array.flags.writeable = False
 
-    def __len__(self) -> int:
-        return len(self.si.time)
-
     @overload
     def __getitem__(self, index: SupportsIndex) -> State: ...
 
@@ -183,7 +164,7 @@ class Trajectory(Value):
         if not -len(self) <= index < len(self):
             raise IndexError(f"run[{index}]: there are {len(self)} rows")
         epoch = None if self.epoch is None else self.epoch + TimeDelta(self.time[index])
-        if (error := float(_rotation_errors(self.si.attitude[index]).max())) > ROTATION_TOLERANCE:
+        if (error := float(rotation_errors(self.si.attitude[index]).max())) > ROTATION_TOLERANCE:
             warnings.warn(
                 f"run[{index}]: its attitudes are no rotations, ||I - R^T R|| is {error:.3g}, and the nearest ones are "
                 f"taken: give {type(self.integrator).__name__} tighter tolerances, or use ba.LGVI",
@@ -191,156 +172,8 @@ class Trajectory(Value):
                 stacklevel=2,
             )
         attitude = self.si.attitude[index]
-        attitude = _nearest_rotations(attitude) if error > ROUND_OFF else attitude
+        attitude = nearest_rotations(attitude) if error > ROUND_OFF else attitude
         return State(self.position[index], self.velocity[index], attitude, self.spin[index], epoch, self.frame)
-
-    @cached_property
-    def _rotations(self) -> Floats:
-        """The attitudes, or the rotations nearest to them where they are none (N, n, 3, 3)."""
-        return nearest_rotations(self.si.attitude)
-
-    def _rows(self, index: slice) -> "Trajectory":
-        """Return some of the rows; the figures remain those of the whole run."""
-        if index.step is not None and index.step <= 0:
-            raise ValueError
-        if not len(self.si.time[index]):
-            raise IndexError(f"run[{index.start}:{index.stop}] has no rows: there are {len(self)}")
-        return replace(self, si=TrajectoryFloats(*(array[index] for array in self.si)))
-
-    @property
-    def legs(self) -> "tuple[Trajectory, ...]":
-        """The rows between impulses, where the same time comes twice; their figures remain those of the whole run."""
-        begins = [0, *(np.flatnonzero(np.diff(self.si.time) == 0) + 1).tolist(), len(self)]
-        return tuple(self._rows(slice(begin, end)) for begin, end in pairwise(begins))
-
-    def at(self, time: Quantity, *, side: Literal["before", "after"] = "after") -> "State | Trajectory":
-        """Return where everything is between the saved rows, by interpolation.
-
-        Through the four rows about a moment goes a polynomial of degree 7 in positions, and one in the rotation vectors
-        that lead from a uniform turn to the attitudes, so that these remain rotations (``dense.py``). The error falls
-        with the eighth power of the distance of the rows, that of velocities and spins with the seventh; at a row it is
-        none. Of a method of order 2 the velocities are the rates of the positions only to its own error, which is in it
-        too. `interpolation_error` says how large it is. Where that is not enough, save more often, or ask
-        `binaryast.retrace`, which follows the motion again from the row before.
-
-        Parameters
-        ----------
-        time : Quantity
-            Since the start: one time, or an array (M,) of them that grow.
-        side : {"after", "before"}
-            Of an impulse at this very time.
-
-        Returns
-        -------
-        State or Trajectory
-            A state of one time; of several a trajectory, whose figures remain those of the whole run. Its potential
-            energy is what the total energy, which is interpolated, leaves.
-
-        Raises
-        ------
-        InputError
-            For a time outside of the run, times that do not grow, or a run of one row.
-
-        Warns
-        -----
-        InterpolationWarning
-            Where the estimated error is above 1e-5, of the distance from the primary, or in rad.
-
-        Examples
-        --------
-        >>> import astropy.units as u
-        >>> import binaryast as ba
-        >>> system, state = ba.catalogue.load("didymos")
-        >>> run = ba.propagate(system, state, duration=1 * u.day, integrator=ba.LGVI(step=40 * u.s))
-        >>> run.at(12345.6 * u.s).separation.round(3)
-        <Quantity 1184.266 m>
-        >>> len(run.at([1, 2, 3] * u.h))
-        3
-        """
-        times, single = self.checked_times(time, side)
-        rows = self._between(times, side)
-        error = self._error_at(times)
-        if error > DOUBTFUL_INTERPOLATION:
-            warnings.warn(
-                f"run.at: rows are too far apart for more than an accuracy of {error:.1g} there, as estimated: "
-                "save more often, or take ba.retrace(run, time)",
-                InterpolationWarning,
-                stacklevel=2,
-            )
-        result = replace(self, si=rows)
-        return result[0] if single else result
-
-    def checked_times(self, time: Quantity, side: str) -> tuple[Floats, bool]:
-        """Return times within the run [s], and whether it is a single one; round-off may put them outside.
-
-        Raises
-        ------
-        InputError
-            As for `at`.
-        """
-        if side not in ("before", "after"):
-            raise InputError(f"side: expected 'before' or 'after' an impulse, got {brief(repr(side))}")
-        shape = as_quantity(time, "s", "time").shape
-        times = np.atleast_1d(to_si(time, "s", "time", shape=shape if len(shape) == 1 else ()))
-        first, last = self.si.time[[0, -1]]
-        if len(times) == 0 or np.any(np.diff(times) <= 0):
-            raise InputError(f"time: expected times that grow, got {brief(times)} s")
-        if len(self) < 2 and np.any(times != first):
-            raise InputError("time: the run has one row only: expected at least 2")
-        within = np.clip(times, first, last)
-        for wrong in times[np.abs(times - within) > 1e-14 * last]:
-            raise InputError(
-                f"time: {span(wrong)} is outside of the run, whose rows are from {span(first)} to {span(last)}"
-            )
-        return np.asarray(within), not shape
-
-    def _between(self, times: Floats, side: str) -> TrajectoryFloats:
-        """Return rows at times, each interpolated in the leg in which it lies."""
-        legs = self.legs
-        begins = np.array([leg.si.time[0] for leg in legs[1:]])
-        of_leg = np.searchsorted(begins, times, side="right" if side == "after" else "left")
-        parts = []
-        for k, leg in enumerate(legs):
-            chosen = times[of_leg == k]
-            if len(chosen):
-                parts.append(leg.interpolated(chosen) if len(leg) > 1 else leg.si)
-        return TrajectoryFloats(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
-
-    def interpolated(self, times: Floats) -> TrajectoryFloats:
-        """Return rows at times [s] within this leg, which has two rows or more, by the interpolant of `at`."""
-        found = dense.between(self._dense_rows, times)
-        given = [
-            _linear(times, self.si.time, array) for array in (self.si.work, self.si.impulse, self.si.angular_impulse)
-        ]
-        result = replace(self, si=TrajectoryFloats(*found, np.zeros(len(times)), *given))
-        energy = np.interp(times, self.si.time, self.energy.value)
-        known = np.isin(times, self.si.time)
-        potential = energy - result.energy.value
-        potential[known] = self.si.potential_energy[np.searchsorted(self.si.time, times[known])]
-        return TrajectoryFloats(*found, potential, *given)
-
-    @property
-    def _dense_rows(self) -> dense.Rows:
-        position, velocity, _, spin = self.si[1:5]
-        return dense.Rows(self.si.time, position, velocity, self._rotations, spin)
-
-    @cached_property
-    def interpolation_error(self) -> Floats:
-        """The estimated error of `at` in each interval between rows (N - 1,).
-
-        It is that of positions, relative to the distance from the primary, and of attitudes [rad], the largest of all
-        bodies; infinite where there are too few rows to tell, zero between the rows before and after an impulse.
-        """
-        parts: list[Floats] = []
-        for leg in self.legs:
-            parts += [dense.errors(leg._dense_rows), np.zeros(1)]
-        return np.concatenate(parts[:-1])
-
-    def _error_at(self, times: Floats) -> float:
-        """Return the largest estimated error at times; none at rows."""
-        times = times[~np.isin(times, self.si.time)]
-        intervals = np.searchsorted(self.si.time, times, side="right") - 1
-        return float(self.interpolation_error[intervals].max(initial=0.0))
 
     @cached_property
     def events(self) -> tuple[Occurrence, ...]:
@@ -356,7 +189,7 @@ class Trajectory(Value):
         state = State(
             quantity(position, "m"),
             quantity(velocity, "m / s"),
-            nearest_rotations(attitude),
+            rotations_of(attitude),
             quantity(spin, "rad / s"),
             None if self.epoch is None else self.epoch + TimeDelta(when),
             self.frame,
@@ -393,7 +226,7 @@ class Trajectory(Value):
         """The paper's reduced variables (34)-(39) of a pair, time first."""
         self._only_pair("relative")
         position, velocity, _, spin = self.si[1:5]
-        return RelativeState.from_arrays(position, velocity, self._rotations, spin, epoch=self.epoch, frame=self.frame)
+        return RelativeState.from_arrays(position, velocity, self.rotations, spin, epoch=self.epoch, frame=self.frame)
 
     @property
     def separation(self) -> Quantity:
@@ -412,88 +245,6 @@ class Trajectory(Value):
             raise InputError(
                 f"{what}: of a pair; this run has {len(self.system.bodies)} bodies: see run.distance and run.position"
             )
-
-    @property
-    def potential_energy(self) -> Quantity:
-        """U (N,)."""
-        return quantity(self.si.potential_energy, "J")
-
-    @property
-    def translational_energy(self) -> Quantity:
-        """Kinetic energy of the mass centres about the barycentre (N,)."""
-        _, velocity = self._about_barycentre
-        return quantity(0.5 * np.sum(velocity**2, axis=-1) @ self._masses, "J")
-
-    @cached_property
-    def _about_barycentre(self) -> tuple[Floats, Floats]:
-        """Positions and velocities (N, n, 3) relative to the barycentre."""
-        masses = self._masses / self._masses.sum()
-        position, velocity = self.si.position, self.si.velocity
-        if len(masses) == 2:  # by the difference, which keeps digits where the barycentre is far or fast
-            factors = np.array([[-masses[1]], [masses[0]]])
-            return factors * np.diff(position, axis=1), factors * np.diff(velocity, axis=1)
-        return (
-            position - np.einsum("i,nij->nj", masses, position)[:, None],
-            velocity - np.einsum("i,nij->nj", masses, velocity)[:, None],
-        )
-
-    @property
-    def _masses(self) -> Floats:
-        return np.array([body.si.mass * body.pulls for body in self.system.bodies])
-
-    @property
-    def _moments(self) -> Floats:
-        return np.array([body.si.moments * body.pulls for body in self.system.bodies])
-
-    @property
-    def rotational_energy(self) -> Quantity:
-        """Of all bodies together (N,)."""
-        return quantity(0.5 * np.sum(self._moments * self.si.spin**2, axis=(-2, -1)), "J")
-
-    @property
-    def energy(self) -> Quantity:
-        """Total energy about the barycentre (N,)."""
-        return self.translational_energy + self.rotational_energy + self.potential_energy
-
-    @property
-    def energy_of_orbit(self) -> Quantity:
-        """Translational and potential energy (N,): below zero a pair is bound, but for what its spins can give."""
-        return self.translational_energy + self.potential_energy
-
-    @property
-    def linear_momentum(self) -> Quantity:
-        """The paper's gamma_T (N, 3)."""
-        return quantity(np.einsum("i,nij->nj", self._masses, self.si.velocity), "kg m / s")
-
-    @property
-    def angular_momentum(self) -> Quantity:
-        """The paper's pi_T, about the barycentre, inertial (N, 3)."""
-        spins = np.einsum("nbij,nbj->ni", self.si.attitude, self._moments * self.si.spin)
-        orbits = np.einsum("i,nij->nj", self._masses, np.cross(*self._about_barycentre))
-        return quantity(orbits + spins, "kg m2 / s")
-
-    @property
-    def work(self) -> Quantity:
-        """Done from outside since the start (N,): by forces, and by potentials that change with time.
-
-        The energy less this work is what a run should keep. It is counted about the barycentre, as the energy is.
-        """
-        return quantity(self.si.work, "J")
-
-    @property
-    def impulse(self) -> Quantity:
-        """Linear momentum that came from outside since the start (N, 3)."""
-        return quantity(self.si.impulse, "kg m / s")
-
-    @property
-    def angular_impulse(self) -> Quantity:
-        """Angular momentum about the barycentre that came from outside since the start (N, 3)."""
-        return quantity(self.si.angular_impulse, "kg m2 / s")
-
-    @property
-    def rotation_error(self) -> Floats:
-        """||I - R^T R||, the largest of all attitudes (N,)."""
-        return np.asarray(_rotation_errors(self.si.attitude).max(axis=1))
 
     def check(
         self, *, energy: float | None = None, momentum: float | None = None, rotation: float | None = None
@@ -643,7 +394,7 @@ class Trajectory(Value):
         return cls(
             system=content.values["system"],
             integrator=content.values["integrator"],
-            si=_floats(content.datasets, len(content.values["system"].bodies)),
+            si=floats_of(content.datasets, len(content.values["system"].bodies)),
             epoch=content.values.get("epoch"),
             frame=str(attributes["frame"]),
             status=str(attributes["status"]),
@@ -658,49 +409,3 @@ class Trajectory(Value):
             occurrences=OccurrenceFloats.of_datasets(content.datasets, len(content.values["system"].bodies)),
             **{name: quantity(attributes[name], unit) if unit else attributes[name] for name, unit in FIGURES.items()},
         )
-
-
-def nearest_rotations(r: Floats) -> Floats:
-    """Return attitudes (.., 3, 3) as they are, or the rotations nearest to them where one of them is none."""
-    return _nearest_rotations(r) if np.any(_rotation_errors(r) > ROTATION_TOLERANCE) else r
-
-
-def _nearest_rotations(r: Floats) -> Floats:
-    """Return the rotations nearest to matrices (..., 3, 3)."""
-    matrices = r.reshape(-1, 3, 3).copy()  # SciPy below 1.15 takes no read-only array
-    return np.asarray(Rotation.from_matrix(matrices).as_matrix().reshape(r.shape))
-
-
-def _linear(times: Floats, of_rows: Floats, values: Floats) -> Floats:
-    """Return values (N, ...) of rows at times between these."""
-    columns = values.reshape(len(values), -1).T
-    return np.stack([np.interp(times, of_rows, column) for column in columns], axis=-1).reshape(-1, *values.shape[1:])
-
-
-def _rotation_errors(r: Floats) -> Floats:
-    """Return ||I - R^T R|| of matrices (..., 3, 3)."""
-    return np.asarray(np.linalg.norm(np.eye(3) - np.swapaxes(r, -1, -2) @ r, axis=(-2, -1)))
-
-
-def _floats(datasets: dict[str, Any], count: int) -> TrajectoryFloats:
-    """Return the arrays of a file, after a look at their shapes and values."""
-    rows = len(datasets["time"])
-    shapes = {
-        "time": (rows,),
-        "position": (rows, count, 3),
-        "velocity": (rows, count, 3),
-        "attitude": (rows, count, 3, 3),
-        "spin": (rows, count, 3),
-        "potential_energy": (rows,),
-        "work": (rows,),
-        "impulse": (rows, 3),
-        "angular_impulse": (rows, 3),
-    }
-    datasets = nothing_given(rows) | datasets  # as in the file of a run without perturbations
-    arrays = {name: np.asarray(datasets[name], dtype=np.float64) for name in shapes}
-    for name, shape in shapes.items():
-        if arrays[name].shape != shape:
-            checked(arrays[name], name, shape)
-        for begin, end in pieces_of(rows):
-            checked(arrays[name][begin:end], name, (end - begin, *shape[1:]))
-    return TrajectoryFloats(**arrays)

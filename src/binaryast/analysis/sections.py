@@ -11,7 +11,8 @@ from binaryast.analysis.orbit import mean_orbit_axes
 from binaryast.analysis.pairs import Bodies, often_enough, orbit_frames, orbit_rate, pair_of, relative_motion, turning
 from binaryast.errors import InputError, did_you_mean
 from binaryast.orbits import pole_axes
-from binaryast.trajectory import Trajectory, TrajectoryFloats
+from binaryast.rows import TrajectoryFloats
+from binaryast.trajectory import Trajectory
 from binaryast.units import Floats, brief, quantity
 from binaryast.values import Value
 
