@@ -55,6 +55,7 @@ if TYPE_CHECKING:
     from binaryast.system import MutualGravity, System
     from binaryast.trajectory import Trajectory
     from binaryast.unions import Part, Union
+    from binaryast.viewer import view
 
 __version__ = _constants.VERSION
 
@@ -116,6 +117,7 @@ _HOMES = {
     "propagate": "propagation",
     "retrace": "retracing",
     "surface": "surfaces",
+    "view": "viewer",
 }
 _MODULES = ("analysis", "catalogue", "constants", "equations", "errors", "events", "plotting", "scenario")
 
@@ -186,6 +188,7 @@ __all__ = [
     "retrace",
     "scenario",
     "surface",
+    "view",
 ]
 
 
