@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from binaryast.system import MutualGravity, System
     from binaryast.trajectory import Trajectory
     from binaryast.unions import Part, Union
-    from binaryast.viewer import view
+    from binaryast.viewer import animate, view
 
 __version__ = _constants.VERSION
 
@@ -108,6 +108,7 @@ _HOMES = {
     "Trajectory": "trajectory",
     "Union": "unions",
     "Yorp": "perturbations",
+    "animate": "viewer",
     "event": "events",
     "external_potential": "perturbations",
     "force": "perturbations",
@@ -172,6 +173,7 @@ __all__ = [
     "Yorp",
     "__version__",
     "analysis",
+    "animate",
     "catalogue",
     "constants",
     "equations",

@@ -1,4 +1,4 @@
-"""The command line: ``binaryast list | show | run | plot | view | completion``.
+"""The command line: ``binaryast list | show | run | plot | view | animate | completion``.
 
 Results go to standard output, everything else to standard error; an error is one line and an exit status that is not 0:
 1 for a run that failed, 2 for wrong input, 130 for Ctrl-C.

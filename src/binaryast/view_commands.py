@@ -17,6 +17,15 @@ def add(commands: Any, as_file: Callable[[argparse.Action], None]) -> None:
     viewing.add_argument("--force", action="store_true", help="replace a file that exists")
     viewing.set_defaults(command=_view)
 
+    moving = commands.add_parser("animate", help="draw a run as a movie, .gif or .mp4")
+    as_file(moving.add_argument("file", metavar="FILE.h5", help="a run"))
+    as_file(moving.add_argument("-o", "--output", metavar="MOVIE.mp4", help="the movie (default: FILE.gif here)"))
+    moving.add_argument("--pictures", type=int, default=240, metavar="N", help="how many (default: 240)")
+    moving.add_argument("--rate", type=int, default=24, metavar="N", help="pictures a second (default: 24)")
+    moving.add_argument("--axes", choices=("inertial", "line"), default="inertial", help="line: of the centres")
+    moving.add_argument("--force", action="store_true", help="replace a file that exists")
+    moving.set_defaults(command=_animate)
+
 
 def _output(options: argparse.Namespace, suffix: str) -> Path:
     """Return where to write, after a look whether that can be."""
@@ -32,4 +41,15 @@ def _view(options: argparse.Namespace) -> int:
     run = Trajectory.read(options.file)
     path = view(run, _output(options, ".html"), rows=options.rows, force=options.force)
     print(f"written: {path} ({path.stat().st_size / 1e6:.2g} MB): open it in a browser")
+    return 0
+
+
+def _animate(options: argparse.Namespace) -> int:
+    from binaryast.trajectory import Trajectory
+    from binaryast.viewer import animate
+
+    run = Trajectory.read(options.file)
+    how = {"pictures": options.pictures, "rate": options.rate, "axes": options.axes}
+    path = animate(run, _output(options, ".gif"), force=options.force, **how)
+    print(f"written: {path} ({path.stat().st_size / 1e6:.2g} MB)")
     return 0

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from binaryast import analysis
 from binaryast.canvas import colour
 from binaryast.constants import VERSION
 from binaryast.errors import InputError
@@ -24,7 +23,6 @@ from binaryast.viewer.solids import reach, solids
 
 SUFFIXES = (".html", ".htm")
 SCRIPTS = ("motion.js", "camera.js", "space.js", "panel.js", "player.js")
-FEWEST_TURNS = 20.0  # without an orbit's period, the run takes so many times what stands for one
 
 
 def view(run: Trajectory, path: str | Path, *, rows: int = 10_000, force: bool = False) -> Path:
@@ -96,6 +94,7 @@ def page(run: Trajectory, rows: int = 10_000) -> str:
 def contents(run: Trajectory, rows: int) -> dict[str, Any]:
     """Return what the scripts know of the run, as plain values and packed arrays."""
     chosen = frames.chosen_rows(run, rows)
+    light = frames.sunlight(run, run.si.time[chosen])
     sizes = [reach(body) for body in run.system.bodies]
     distances = _distances(run)
     unit = float(np.median(distances.max(axis=1))) or max(sizes) or 1.0
@@ -108,8 +107,8 @@ def contents(run: Trajectory, rows: int) -> dict[str, Any]:
         "epoch": None if run.epoch is None else run.epoch.isot,
         "unit": unit,
         "rows": len(run),
-        "period": _period(run),
-        "pole": _pole(run).tolist(),
+        "period": frames.period(run),
+        "pole": frames.pole(run).tolist(),
         "bodies": [
             {
                 "name": body.name,
@@ -120,7 +119,7 @@ def contents(run: Trajectory, rows: int) -> dict[str, Any]:
             for i, body in enumerate(run.system.bodies)
         ],
         "motion": frames.motion(run, chosen, unit),
-        "sunlight": frames.sunlight(run, chosen),
+        "sunlight": None if light is None else packed(light, np.float32),
         "kept": [
             {
                 "name": one.name,
@@ -137,25 +136,3 @@ def contents(run: Trajectory, rows: int) -> dict[str, Any]:
 def _distances(run: Trajectory) -> Floats:
     """Return the distances of bodies from the first [m] (N, n)."""
     return np.asarray(np.linalg.norm(run.si.position - run.si.position[:, :1], axis=-1))
-
-
-def _period(run: Trajectory) -> float:
-    """Return what a turn takes [s]: that of the innermost orbit, or a part of the run where there is none."""
-    periods = []
-    for i in range(1, min(len(run.system.bodies), 20)):
-        try:
-            periods.append(float(analysis.mutual_period(run.legs[-1], (0, i)).to_value("s")))
-        except InputError:  # less than one turn, or too few rows to count turns
-            continue
-    length = float(run.si.time[-1] - run.si.time[0])
-    return min(periods) if periods else length / FEWEST_TURNS or 1.0
-
-
-def _pole(run: Trajectory) -> Floats:
-    """Return the direction of the orbits' angular momentum at the start, inertial; z where there is none."""
-    masses = np.array([body.si.mass for body in run.system.bodies])
-    x, v = (array[0] - masses @ array[0] / masses.sum() for array in (run.si.position, run.si.velocity))
-    momentum = masses @ np.cross(x, v)
-    size = float(masses @ (np.linalg.norm(x, axis=1) * np.linalg.norm(v, axis=1)))
-    length = float(np.linalg.norm(momentum))
-    return np.asarray(momentum / length if length > 1e-9 * size else [0.0, 0.0, 1.0])

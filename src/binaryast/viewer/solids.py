@@ -57,20 +57,20 @@ def meshes(shape: Shape) -> Iterator[tuple[Floats, Any]]:
 
 
 def balls(body: RigidBody, unit: float) -> list[dict[str, Any]]:
-    """Return balls for the points of a body, which fill part of the ellipsoid that has its moments of inertia."""
+    """Return balls for the points of a body, if it has some."""
     if body.points is None:
         return []
-    positions, fractions = body.points
+    places, radii = body.points[0] / unit, ball_radii(body) / unit
+    return [{"balls": packed(places, np.float32), "radii": packed(radii, np.float32)}]
+
+
+def ball_radii(body: RigidBody) -> Floats:
+    """Return radii (k,) [m] of balls for the points of a body: they fill a part of the ellipsoid of its inertia."""
+    assert body.points is not None
     second = np.maximum(body.si.moments.sum() / 2 - body.si.moments, 0) / body.si.mass
     semi_axes = np.sqrt(5 * second)
     semi_axes = np.maximum(semi_axes, 0.1 * semi_axes.max())  # of points on a line or in a plane
-    radii = np.cbrt(FILLING * fractions * np.prod(semi_axes))
-    return [
-        {
-            "balls": packed(positions / unit, np.float32),
-            "radii": packed(radii / unit, np.float32),
-        }
-    ]
+    return np.asarray(np.cbrt(FILLING * body.points[1] * np.prod(semi_axes)))
 
 
 def root(matrix: Floats) -> Floats:
