@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from binaryast import analysis, catalogue, constants, equations, errors, events, plotting, scenario
     from binaryast.adaptive import Adaptive
     from binaryast.bodies import RigidBody
+    from binaryast.citations import cite
     from binaryast.coefficients import InertiaIntegrals, StokesCoefficients
     from binaryast.elements import Orbit
     from binaryast.errors import BinaryastError
@@ -109,6 +110,7 @@ _HOMES = {
     "Union": "unions",
     "Yorp": "perturbations",
     "animate": "viewer",
+    "cite": "citations",
     "event": "events",
     "external_potential": "perturbations",
     "force": "perturbations",
@@ -175,6 +177,7 @@ __all__ = [
     "analysis",
     "animate",
     "catalogue",
+    "cite",
     "constants",
     "equations",
     "errors",

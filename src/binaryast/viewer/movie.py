@@ -16,7 +16,7 @@ from matplotlib.figure import Figure
 from scipy.spatial.transform import Rotation
 
 from binaryast.canvas import DARK, colour, length_unit, plain, time_of
-from binaryast.errors import BinaryastError, InputError, InterpolationWarning
+from binaryast.errors import InputError, InterpolationWarning, MissingPackageError
 from binaryast.storage import as_path, refuse, replace_whole
 from binaryast.summaries import joined
 from binaryast.trajectory import Trajectory, nearest_rotations
@@ -73,7 +73,7 @@ def animate(
     ------
     InputError
         For what is not a run, another ending, other axes, or numbers that are not positive.
-    BinaryastError
+    MissingPackageError
         Where there is no ffmpeg.
     StorageError
         Where it cannot be written.
@@ -121,7 +121,7 @@ def _ffmpeg() -> str:
         import imageio_ffmpeg
 
         return str(imageio_ffmpeg.get_ffmpeg_exe())
-    raise BinaryastError(
+    raise MissingPackageError(
         "an .mp4 needs ffmpeg: install it, or its package by pip install 'binaryast[movie]'; or write a .gif"
     )
 
