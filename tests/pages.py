@@ -8,11 +8,21 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.resources import files
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+
+def _node_of_playwright() -> str | None:
+    """Return the Node that playwright brings for itself."""
+    found = find_spec("playwright")
+    if found is None or found.origin is None:
+        return None
+    return shutil.which("node", path=str(Path(found.origin).parent / "driver"))
+
+
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-NODE = shutil.which("node")
+NODE = shutil.which("node") or _node_of_playwright()
 MOTION = files("binaryast.viewer") / "page" / "motion.js"
 FLAGS = [  # drawing by software, and no calls home
     *("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"),

@@ -70,6 +70,7 @@ def test_many_bodies_take_fewer_rows() -> None:
     run = ba.propagate(system, state, duration=2000 * u.s, integrator=ba.LGVI(1 * u.s), save_every=1 * u.s)
     text = page(run)
     assert len(text) < 10e6
+    assert pages.data_of(text)["title"].endswith("grain 5 and 294 others")
     assert unpacked(pages.data_of(text)["motion"]["time"], float).size == 827
 
 

@@ -7,6 +7,7 @@ class Camera {
     this.target = new THREE.Vector3();
     this.up = new THREE.Vector3(0, 0, 1);
     this.changed = changed;
+    [this.azimuth, this.elevation, this.distance] = [0, 0, 1];
     this.pointers = new Map();
     canvas.addEventListener("pointerdown", (event) => {
       canvas.setPointerCapture(event.pointerId);

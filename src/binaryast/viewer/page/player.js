@@ -24,7 +24,7 @@
 
   // What can be chosen.
   const axes = [{ text: "inertial", kind: "inertial" }];
-  if (motion.count > 1) axes.push({ text: "turning with the line of centres", kind: "line", body: 1 });
+  if (motion.count > 1) axes.push({ text: "line of centres", kind: "line", body: 1 });
   for (const body of run.motion.turning.slice(0, 20)) axes.push({ text: `fixed in ${run.bodies[body].name}`, kind: "body", body });
   axes.forEach((one, i) => by("axes").add(new Option(one.text, i)));
   by("focus").add(new Option("barycentre", -1));
@@ -97,6 +97,7 @@
   }
   new ResizeObserver(resized).observe(by("stage"));
   resized();
+  space.camera.home(space.wholeView());
   document.querySelectorAll("details").forEach((one) => one.addEventListener("toggle", stale));
 
   function tick(now) {

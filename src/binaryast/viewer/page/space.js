@@ -1,7 +1,7 @@
 "use strict";
 // What is drawn: the bodies, their paths, their names, and the light.
 
-const MOST_PATHS = 40, LONGEST_PATH = 60000, MOST_NAMES = 40;
+const MOST_PATHS = 40, LONGEST_PATH = 60000, MOST_NAMES = 12;
 const SMALLEST = 2; // pixels: what is smaller is shown as a dot
 
 // A sphere's map: lines each 30 degrees, the one through the x axis stronger, so that its turning is seen.
@@ -70,11 +70,11 @@ class Space {
     this.addNames(labels);
     this.extent = Math.max(...run.bodies.map((body, i) => body.reach + Motion.size(motion.at(motion.time[0], i).place)));
     this.look({ kind: "inertial" });
-    this.camera.home(this.wholeView());
   }
 
   wholeView() {
-    return (1.05 * Math.max(this.extent, 1)) / Math.sin((this.camera.eye.fov * Math.PI) / 360);
+    const narrow = Math.min(1, this.camera.eye.aspect);
+    return (1.05 * Math.max(this.extent, 1)) / Math.sin((this.camera.eye.fov * Math.PI) / 360) / narrow;
   }
 
   addLights() {
