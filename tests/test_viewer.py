@@ -93,6 +93,26 @@ def test_between_rows_bodies_are_where_they_are(run: ba.Trajectory) -> None:
 
 
 @needs_node
+def test_bodies_turn_by_their_spins_where_rows_are_more_than_a_turn_apart(run: ba.Trajectory) -> None:
+    data = pages.data_of(page(run, rows=9))  # 3 h apart; the primary turns in 2.26 h
+    times = np.linspace(1000, 86000, 50)
+    found = pages.in_node(data, f"{times.tolist()}.map(t => motion.attitude(t, 0))")
+    truth = Rotation.from_matrix(run.at(times * u.s).si.attitude[:, 0].copy())
+    assert (Rotation.from_quat(found).inv() * truth).magnitude().max() < 1e-5
+
+
+def test_places_are_about_the_barycentre() -> None:
+    system, state = ba.catalogue.load("didymos")
+    away = [3, 4, 5] * u.km
+    moved = ba.State(state.position + away, state.velocity + away / (1 * u.h), state.attitude, state.spin)
+    how = {"duration": 1 * u.h, "integrator": ba.LGVI(40 * u.s)}
+    one, two = (pages.data_of(page(ba.propagate(system, start, **how))) for start in (state, moved))
+    for name in ("position", "velocity"):
+        here, there = (unpacked(data["motion"][name], np.float32) for data in (one, two))
+        assert here == pytest.approx(there, abs=1e-6)
+
+
+@needs_node
 def test_axes_turn_with_the_line_of_centres_and_with_bodies(run: ba.Trajectory) -> None:
     data = pages.data_of(page(run))
     code = "[0, 40000, 86400].map(t => ['line', 'body'].map(kind => motion.shown(t, {kind, body: 1})))"
