@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from binaryast import analysis, catalogue, constants, equations, errors, events, plotting, scenario
     from binaryast.adaptive import Adaptive
     from binaryast.bodies import RigidBody
+    from binaryast.citations import cite
     from binaryast.coefficients import InertiaIntegrals, StokesCoefficients
     from binaryast.elements import Orbit
     from binaryast.errors import BinaryastError
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
     from binaryast.system import MutualGravity, System
     from binaryast.trajectory import Trajectory
     from binaryast.unions import Part, Union
+    from binaryast.viewer import animate, view
 
 __version__ = _constants.VERSION
 
@@ -108,6 +110,8 @@ _HOMES = {
     "Trajectory": "trajectory",
     "Union": "unions",
     "Yorp": "perturbations",
+    "animate": "viewer",
+    "cite": "citations",
     "event": "events",
     "external_potential": "perturbations",
     "force": "perturbations",
@@ -118,6 +122,7 @@ _HOMES = {
     "resume": "resuming",
     "retrace": "retracing",
     "surface": "surfaces",
+    "view": "viewer",
 }
 _MODULES = ("analysis", "catalogue", "constants", "equations", "errors", "events", "plotting", "scenario")
 
@@ -172,7 +177,9 @@ __all__ = [
     "Yorp",
     "__version__",
     "analysis",
+    "animate",
     "catalogue",
+    "cite",
     "constants",
     "equations",
     "errors",
@@ -189,6 +196,7 @@ __all__ = [
     "retrace",
     "scenario",
     "surface",
+    "view",
 ]
 
 

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from astropy.units import Quantity
 
+from binaryast import markup
 from binaryast.constants import G
 from binaryast.errors import InputError
 from binaryast.kernels.moments import from_inertia
@@ -198,6 +199,10 @@ class RigidBody(Value):
                 f"{where}: principal moments {shown} kg m2 break the triangle inequality: "
                 "the largest can be at most the sum of the other two"
             )
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        return markup.body(self)
 
     def moments(self, degree: int) -> Floats:
         """Return the integrals of x^i y^j z^k dm over the mass, up to i + j + k = degree, in the body frame.

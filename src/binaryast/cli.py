@@ -1,4 +1,4 @@
-"""The command line: ``binaryast list | show | run | resume | plot | completion``.
+"""The command line: ``binaryast list | show | run | resume | plot | view | animate | completion``.
 
 Results go to standard output, everything else to standard error; an error is one line and an exit status that is not 0:
 1 for a run that failed, 2 for wrong input, 130 for Ctrl-C.
@@ -15,6 +15,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from binaryast import view_commands
 from binaryast.constants import VERSION
 from binaryast.errors import BinaryastError, InputError
 from binaryast.run_options import RUN, is_file, scenario_of, show_warning, start
@@ -138,6 +139,8 @@ def parser() -> argparse.ArgumentParser:
     _file(plotting.add_argument("-o", "--output", metavar="FILE.png", help="png, pdf or svg (default: FILE.png)"))
     plotting.add_argument("--force", action="store_true", help="replace a file that exists")
     plotting.set_defaults(command=_plot)
+
+    view_commands.add(commands, _file)
 
     completing = commands.add_parser("completion", help="print the completion script of a shell")
     completing.add_argument("shell", choices=("bash", "zsh"))

@@ -40,6 +40,10 @@ class StorageError(BinaryastError, OSError):
     """A file that is missing, broken, in the way, or cannot be written."""
 
 
+class MissingPackageError(BinaryastError, ImportError):
+    """A package, or a program, that only some things need, and that is not installed."""
+
+
 class CheckError(BinaryastError, AssertionError):
     """A run whose errors are larger than what `binaryast.Trajectory.check` was asked to accept."""
 

@@ -124,11 +124,13 @@ def _with_pole(axes: Floats, z: Floats) -> Floats:
 def pole_axes(pole: Any) -> Floats:
     """Return inertial axes (columns) of an orbit plane: x on its ascending node, z along its pole.
 
-    ``pole`` is None for the inertial z axis, a vector of three numbers, or right ascension and declination.
+    ``pole`` is None for the inertial z axis, a vector of three numbers, right ascension and declination, or an astropy
+    ``SkyCoord``.
     """
     if pole is None:
         return np.eye(3)
     if is_celestial(pole):
+        pole = [pole.icrs.ra, pole.icrs.dec] if hasattr(pole, "icrs") else pole
         ascension, declination = to_si(pole, "rad", "pole (right ascension, declination)", shape=(2,))
         z = np.array([cos(declination) * cos(ascension), cos(declination) * sin(ascension), sin(declination)])
     else:
@@ -146,9 +148,11 @@ def pole_axes(pole: Any) -> Floats:
 
 
 def is_celestial(pole: Any) -> bool:
-    """Whether a pole is given by right ascension and declination."""
-    return isinstance(pole, Quantity) or (
-        isinstance(pole, (list, tuple)) and any(isinstance(item, Quantity) for item in pole)
+    """Whether a pole is given by right ascension and declination, or as a ``SkyCoord``."""
+    return (
+        isinstance(pole, Quantity)
+        or hasattr(pole, "icrs")
+        or (isinstance(pole, (list, tuple)) and any(isinstance(item, Quantity) for item in pole))
     )
 
 

@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from astropy.time import Time
 from astropy.units import Quantity
+from scipy.spatial.transform import Rotation
 
-from binaryast import orbits
+from binaryast import markup, orbits
 from binaryast.elements import ZERO, Orbit
 from binaryast.errors import InputError
 from binaryast.orbits import from_orbits, is_celestial
@@ -113,7 +114,8 @@ class State(Value):
         separation, period : Quantity
             Exactly one: distance of the mass centres (length), or sidereal period of the orbit (time).
         pole : array-like or Quantity, optional
-            Of the orbit: three numbers, or right ascension and declination (two angles); the inertial z by default.
+            Of the orbit: three numbers, right ascension and declination (two angles), or a ``SkyCoord``; the inertial z
+            by default.
         spins : sequence
             For each body, primary first: a period (time) or a rate (angle over time) about its z axis, a vector of
             three rates in the body's frame, or ``"synchronous"``; for a point None, or ``"none"``.
@@ -284,6 +286,15 @@ class State(Value):
             epoch=epoch,
             frame=("ICRF" if orbits.is_celestial(pole) else "local") if frame is None else frame,
         )
+
+    @property
+    def rotation(self) -> Rotation:
+        """The attitudes as SciPy rotations (n,), body frame -> inertial."""
+        return Rotation.from_matrix(self.si.attitude.copy())
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        return markup.state(self)
 
     @property
     def separation(self) -> Quantity:

@@ -7,6 +7,8 @@ import numpy as np
 
 from binaryast.units import span
 
+MOST_NAMES = 8
+
 
 def summary(run: Any) -> str:
     """Return a few lines: how the run ended, its cost, and how well it conserved what it should."""
@@ -86,5 +88,7 @@ def _distances(run: Any) -> list[str]:
 
 
 def joined(names: Sequence[str]) -> str:
-    """Return names as one would say them."""
+    """Return names as one would say them; of very many the first, and how many others there are."""
+    if len(names) > MOST_NAMES:
+        return f"{', '.join(names[: MOST_NAMES - 1])} and {len(names) - MOST_NAMES + 1} others"
     return f"{', '.join(names[:-1])} and {names[-1]}"

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from astropy.units import Quantity
 
+from binaryast import markup
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError, did_you_mean
 from binaryast.gravity import Gravity, SecondDegree
@@ -164,6 +165,10 @@ class System(Value):
         self._only_pair("reduced_mass")
         one, two = self.bodies[1].si.mass, self.bodies[0].si.mass
         return one * two / (one + two)
+
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        return markup.system(self)
 
     def index(self, body: str | int) -> int:
         """Return the index of a body given by its name or index.

@@ -5,17 +5,18 @@ import warnings
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, SupportsIndex, overload
+from typing import Any, SupportsIndex, overload
 
 import numpy as np
 from astropy.time import Time, TimeDelta
 from astropy.units import Quantity
-from scipy.spatial.transform import Rotation
 
-from binaryast import run_file, storage, summaries
+from binaryast import markup, run_file, storage, summaries
 from binaryast.between import Between
+from binaryast.directions import Directions
 from binaryast.errors import CheckError, InputError, StepWarning
 from binaryast.events import Event
+from binaryast.exports import Exports
 from binaryast.impulses import AnyImpulse
 from binaryast.integrators import Integrator
 from binaryast.occurrences import Occurrence, OccurrenceFloats
@@ -26,9 +27,6 @@ from binaryast.state import RelativeState, State
 from binaryast.system import System
 from binaryast.units import Floats, brief, numbers, quantity
 from binaryast.values import Value
-
-if TYPE_CHECKING:
-    from astropy.table import QTable
 
 FIGURES = {  # of the whole run, over every step; with their units
     "max_relative_energy_error": "",
@@ -54,7 +52,7 @@ SOMETIMES = ("max_next_degree_term", "accuracy", "estimated_error")  # None of s
 
 
 @dataclass(frozen=True, eq=False)
-class Trajectory(Between, Value):
+class Trajectory(Directions, Exports, Between, Value):
     """What `binaryast.propagate` returns.
 
     ``run[i]`` is a `State`, ``run[a:b]`` a `Trajectory` of those rows; `len` is the number of rows.
@@ -284,37 +282,9 @@ class Trajectory(Between, Value):
         """Return a few lines: how the run ended, its cost, and how well it conserved what it should."""
         return summaries.summary(self)
 
-    def to_table(self) -> "QTable":
-        """Return the run as an astropy table: one row a time, a column a number; attitudes as quaternions, scalar last.
-
-        Examples
-        --------
-        >>> import astropy.units as u
-        >>> import binaryast as ba
-        >>> system, state = ba.catalogue.load("didymos")
-        >>> run = ba.propagate(system, state, duration=1 * u.h, integrator=ba.LGVI(40 * u.s), save_every=10 * u.min)
-        >>> table = run.to_table()
-        >>> len(table), table.colnames[:3]
-        (7, ['time', 'Didymos.x', 'Didymos.y'])
-        """
-        from astropy.table import QTable  # a quarter of a second, needed only here
-
-        columns: dict[str, Any] = {"time": self.time}
-        for i, name in enumerate(self.system.names):
-            quaternion = Rotation.from_matrix(self.si.attitude[:, i].copy()).as_quat()
-            for parts, values in (
-                (("x", "y", "z"), self.position[:, i]),
-                (("vx", "vy", "vz"), self.velocity[:, i]),
-                (("qx", "qy", "qz", "qw"), quaternion),
-                (("spin_x", "spin_y", "spin_z"), self.spin[:, i]),
-            ):
-                columns |= {f"{name}.{part}": values[:, j] for j, part in enumerate(parts)}
-        table = QTable(columns)
-        table["energy"] = self.energy
-        table.meta = {"frame": self.frame, "status": self.status, **self.provenance}
-        if self.epoch is not None:
-            table.meta["epoch"] = f"{self.epoch.isot} TDB"
-        return table
+    def _repr_html_(self) -> str:
+        """Return what a notebook shows."""
+        return markup.run(self)
 
     def write(self, path: str | Path, *, force: bool = False) -> Path:
         """Write the run to an HDF5 file, whole or not at all.
