@@ -193,3 +193,10 @@ def check_keys(table: dict[str, Any], known: Iterable[str], needed: Iterable[str
         if key not in table and repr(key) not in meant:  # one that is misspelt is not missing too
             found.mistakes.append(f"{where}{key} is missing")
     found.said()
+
+
+def typed(table: dict[str, Any], kinds: dict[str, Any], where: str) -> Any:
+    """Return the object of a class named by ``type``, whose other keys are its arguments."""
+    kind = kinds[choice(table, kinds, where)]
+    arguments = {key: value for key, value in table.items() if key != "type"}
+    return call(kind, {}, arguments, where)
