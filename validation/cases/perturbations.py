@@ -61,14 +61,14 @@ def of_set(*, hill: bool) -> list[Check]:
         Check(
             f"{what}: order of the largest error, minus 2",
             methods.slope(STEPS, errors) - 2,
-            2e-2,
+            1e-2,
             "the next power of the step",
             shown=f"{errors[-1]:.2g} in steps of {STEPS[-1]:g} s",
         ),
         Check(
             f"{what}: energy less the work done, power of the step, minus 2",
             methods.slope(STEPS, balances) - 2,
-            2e-2,
+            1e-2,
             "the next power of the step",
             shown=f"{balances[-1]:.2g} of |E0| in steps of {STEPS[-1]:g} s",
         ),

