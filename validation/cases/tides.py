@@ -165,6 +165,7 @@ def of_nothing() -> list[Check]:
             1e-12,
             "bit for bit, but for sums that the compiler fuses into one rounding where it sees that it can",
             roundoff=True,
+            printed=True,
         ),
         Check(
             "the same of KeplerSplitting: all quantities at the end",
@@ -172,6 +173,7 @@ def of_nothing() -> list[Check]:
             1e-13,
             "rounding: in another place the compiler joins other products and sums into one instruction",
             roundoff=True,
+            printed=True,
         ),
     ]
 
