@@ -102,7 +102,7 @@ def test_only_what_faces_the_eye_is_seen() -> None:
     [
         ({"path": "a.avi"}, "expected a name that ends in .gif or .mp4"),
         ({"pictures": 0}, "pictures: expected a whole number, 1 or more, got 0"),
-        ({"rate": 0.0}, "rate: expected a whole number of pictures a second, 1 to 240, got 0.0"),
+        ({"rate": 0.0}, "rate: expected a whole number, 1 to 240, got 0.0"),
         ({"axes": "body"}, "axes: expected 'inertial' or 'line', got 'body'"),
         ({"path": "no/a.gif"}, "there is no folder"),
         ({"run": 3}, "run: expected a ba.Trajectory, got 3"),

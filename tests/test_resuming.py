@@ -16,7 +16,7 @@ import pytest
 from validation import killing
 
 import binaryast as ba
-from binaryast import cli, propagation, run_file, storage, streaming
+from binaryast import cli, propagation, reporting, run_file, storage, streaming
 from binaryast.errors import AccuracyError, InputError, ResumeWarning, StorageError
 from binaryast.gravity import PairPotential
 
@@ -320,7 +320,7 @@ def test_what_cannot_go_on(stopping, tmp_path: Path, capsys: pytest.CaptureFixtu
 def test_another_version_is_said(stopping, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "run.h5"
     arguments = stopped_run(path, stopping)
-    now = propagation.provenance()
+    now = reporting.provenance()
     monkeypatch.setattr("binaryast.resuming.provenance", lambda: now | {"numpy": "99.0"})
     with pytest.warns(ResumeWarning, match=r"was begun with numpy .*, this is 99\.0: it is the same to round-off"):
         same(ba.resume(path), ba.propagate(*DIDYMOS, **arguments))

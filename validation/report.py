@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from binaryast.errors import InputError
-from binaryast.propagation import provenance
+from binaryast.reporting import provenance
 from validation.case import Check, Picture
 from validation.runner import Outcome
 

@@ -10,7 +10,7 @@ from astropy.units import Quantity
 from binaryast.bodies import RigidBody
 from binaryast.errors import InputError
 from binaryast.polyhedron_table import layers_of, table_of
-from binaryast.units import Floats, as_quantity, brief, quantity, to_si
+from binaryast.units import Floats, as_quantity, brief, quantity, to_si, whole_number
 from binaryast.values import Value
 
 COLUMNS = 11  # of the kernel's result
@@ -107,9 +107,7 @@ def polyhedron_field(body: RigidBody, points: Quantity, *, threads: int = 1) -> 
 
 def checked_threads(threads: Any, where: str) -> int:
     """Return a number of threads, looked at."""
-    if not isinstance(threads, (int, np.integer)) or isinstance(threads, bool) or threads < 1:
-        raise InputError(f"{where}: threads: expected a whole number of at least 1, got {brief(threads)}")
-    return int(threads)
+    return whole_number(threads, f"{where}: threads", 1)
 
 
 def evaluated(table: Floats, points: Floats, threads: int = 1) -> Floats:

@@ -6,11 +6,12 @@ The paper's body 1 is the secondary, its body 2 the primary; U(X, R) is in the p
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from binaryast.bodies import RigidBody
+from binaryast.compiling import Function, compiled
 from binaryast.errors import InputError
 from binaryast.kernels.mutual import ellipsoid_parameters
 from binaryast.kernels.mutual.multipole_parameters import parameters_of, term_sizes
@@ -19,8 +20,6 @@ from binaryast.units import Floats, brief, numbers
 from binaryast.values import Value
 
 LARGEST_DEGREE = 16  # of a multipole potential: beyond it, compiling takes longer than it is worth
-
-Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class Gravity(Value, ABC):
@@ -437,15 +436,7 @@ def pair_potential(function: Function) -> Function:
     ...     w = p[0] / r**3
     ...     return -p[0] / r, w * x, w * y, w * z, 0.0, 0.0, 0.0
     """
-    from numba.core.errors import NumbaError
+    from binaryast.kernels.jit import PAIR_POTENTIAL
 
-    from binaryast.kernels.jit import PAIR_POTENTIAL, compile_for_user
-
-    try:
-        return compile_for_user(function, PAIR_POTENTIAL)
-    except (NumbaError, TypeError) as error:
-        reason = next((line.strip() for line in str(error).splitlines()[1:] if line.strip()), brief(error))
-        raise InputError(
-            f"pair_potential: {getattr(function, '__name__', function)} cannot be compiled: {brief(reason)}; expected "
-            "13 arguments (p, x, y, z, r11 .. r33) and seven floats as the result"
-        ) from None
+    expected = "13 arguments (p, x, y, z, r11 .. r33) and seven floats as the result"
+    return compiled(function, PAIR_POTENTIAL, "pair_potential", expected)

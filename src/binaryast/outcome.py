@@ -1,13 +1,15 @@
 """What a run hands over to be reported, however it was followed."""
 
 from dataclasses import dataclass, field
+from math import inf, pi
 from typing import NamedTuple
 
 import numpy as np
 
-from binaryast.errors import ContactError
+from binaryast.errors import ContactError, StepError
 from binaryast.events import Event
 from binaryast.gravity import Gravity
+from binaryast.integrators import Stepping
 from binaryast.kernels import loop
 from binaryast.occurrences import OccurrenceFloats
 from binaryast.system import System
@@ -130,3 +132,17 @@ def overlap(system: System, pair: int, position: Floats) -> ContactError:
 def interruption_message(after: float) -> str:
     """Return what is said after Ctrl-C."""
     return f"stopped after {after:g} s; go on from the last row, run[-1]"
+
+
+def turn_error(name: str, spin: float, integrator: Stepping, step: float) -> StepError:
+    """Return the error of a step that turns a body too far."""
+    turned = (
+        f"step: {name} spins at {spin:.6g} rad/s (once in {2 * pi / spin / 3600:.4g} h), h Omega = {step * spin:.4g}"
+    )
+    if integrator.largest_turn == inf:
+        return StepError(f"{turned}: more turns in a step of {step:g} s than can be followed: give a shorter one")
+    scheme = "" if integrator.order == 2 else f" at order {integrator.order} ({integrator.shares.name})"
+    return StepError(
+        f"{turned}; the implicit equation (128) has a solution only below {integrator.largest_turn:.4g}{scheme}: the "
+        f"step must be below {integrator.largest_turn / spin:.6g} s, got {step:g} s; ba.Splitting has no such limit"
+    )

@@ -1,12 +1,8 @@
 """The driver of a run: it checks, has the run followed by compiled steps, by SciPy or by heyoka, and reports."""
 
-import platform
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace
-from datetime import UTC, datetime
-from functools import cache
-from importlib.metadata import version
 from math import inf, pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -14,60 +10,33 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from astropy.units import Quantity
 
-from binaryast import choosing, closest, constants, legs, streaming
-from binaryast.errors import (
-    AccuracyError,
-    BinaryastError,
-    EndWarning,
-    GravityWarning,
-    InputError,
-    StepWarning,
-    StorageError,
-)
-from binaryast.events import Contact, Event, checked
-from binaryast.gravity import LARGEST_DEGREE
+from binaryast import choosing, closest, legs, streaming
+from binaryast.errors import AccuracyError, BinaryastError, InputError, StepWarning, StorageError
+from binaryast.events import Event, checked
 from binaryast.impulses import AnyImpulse, in_order
 from binaryast.integrators import Integrator, RungeKutta, Splitting, Stepping, Taylor
-from binaryast.kernels import loop
-from binaryast.kernels.clearance import least_clearance
-from binaryast.kernels.jit import source_hash
-from binaryast.outcome import Outcome, interruption_message
+from binaryast.outcome import Outcome, interruption_message, turn_error
 from binaryast.progress import bar, said_if_long
 from binaryast.rates import rates
-from binaryast.rows import TrajectoryFloats
-from binaryast.run_file import pieces_of
+from binaryast.reporting import trajectory_of
 from binaryast.schedule import Leg, schedule
 from binaryast.state import State
-from binaryast.stepping import SteppedRun, turn_error
+from binaryast.stepping import SteppedRun
 from binaryast.storage import as_path, refuse
 from binaryast.streaming import Memory
-from binaryast.system import Pair, System
+from binaryast.system import System
 from binaryast.trajectory import Trajectory
 from binaryast.trials import Trials
-from binaryast.units import Floats, brief, numbers, quantity, span, to_si
-from binaryast.working.base import surfaces
+from binaryast.units import brief, numbers, quantity, span, to_si
 
 if TYPE_CHECKING:
     from binaryast.solving import SolvedRun
     from binaryast.taylor.run import TaylorRun
 
-DOUBTFUL_ENERGY_ERROR = 0.01
 DOUBTFUL_TURN = 2 * pi / 20  # rad in one step
-DOUBTFUL_TERM = 1e-3  # of gravity that is left out, over G m1 m2/r
-TERM_ROWS = 1000  # how many of the saved rows are looked at for it
 LEAST_ACCURACY, MOST_ACCURACY = 1e-14, 1e-2
 ATTEMPTS = 8  # to reach it
 TRY_OUT = Splitting(quantity(1.0, "s"))
-
-
-class Method(NamedTuple):
-    """How a run is to be followed, by an integrator or to an accuracy; whether with a bar; where its rows go."""
-
-    integrator: Integrator | None
-    accuracy: float
-    progress: bool
-    keeper: Memory
-    events: tuple[Event, ...] = ()
 
 
 class Inputs(NamedTuple):
@@ -83,11 +52,13 @@ class Inputs(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Which leg of a run: its number, the inputs of the run, and the legs before."""
+    """Which leg of which run: its number, the legs before, the inputs of the run, where rows go, whether with a bar."""
 
     number: int
-    inputs: Inputs
     runs: list[Trajectory]
+    inputs: Inputs
+    keeper: Memory
+    progress: bool = False
 
 
 class Followed(NamedTuple):
@@ -221,7 +192,6 @@ def _stopped(start: Trajectory, inputs: Inputs) -> Trajectory:
 
 def follow(system: System, inputs: Inputs, keeper: Memory, *, progress: bool) -> Trajectory:
     """Follow a system through all legs that are not over yet, and have their rows kept."""
-    method = Method(inputs.integrator, inputs.accuracy, progress, keeper, inputs.events)
     runs = keeper.runs()
     pressed = False
     for number, (leg, due) in enumerate(legs.cut(inputs.end, inputs.interval, inputs.impulses)):
@@ -235,7 +205,7 @@ def follow(system: System, inputs: Inputs, keeper: Memory, *, progress: bool) ->
         try:
             if pressed and leg.length:
                 raise KeyboardInterrupt
-            followed = _follow(system, now, leg, method, Place(number, inputs, runs))
+            followed = _follow(system, now, leg, Place(number, runs, inputs, keeper, progress))
         except KeyboardInterrupt:  # between two legs: what has been computed is kept
             if not runs:
                 raise
@@ -246,7 +216,7 @@ def follow(system: System, inputs: Inputs, keeper: Memory, *, progress: bool) ->
             if not leg.begin:
                 raise
             raise type(error)(f"from {span(leg.begin)} on, after an impulse: {error}") from None
-        runs.append(_trajectory(system, inputs.state, method.events, *followed))
+        runs.append(trajectory_of(system, inputs.state, inputs.events, *followed))
         keeper.over(number, leg, runs, legs.joined(runs, inputs.impulses))
         pressed = followed.outcome.pressed
     return keeper.finished(legs.joined(runs, inputs.impulses))
@@ -255,8 +225,7 @@ def follow(system: System, inputs: Inputs, keeper: Memory, *, progress: bool) ->
 def follow_leg(system: System, state: State, leg: Leg, integrator: Integrator, events: Sequence[Event]) -> Trajectory:
     """Return a run along a leg by itself: what acts from outside knows the time when it begins."""
     inputs = Inputs(state, leg.end, None, integrator, 0.0, (), checked(events, system))
-    method = Method(integrator, 0.0, False, Memory(), inputs.events)
-    return _trajectory(system, state, inputs.events, *_follow(system, state, leg, method, Place(0, inputs, [])))
+    return trajectory_of(system, state, inputs.events, *_follow(system, state, leg, Place(0, [], inputs, Memory())))
 
 
 def _accuracy(value: Any) -> float:
@@ -267,23 +236,24 @@ def _accuracy(value: Any) -> float:
     return asked
 
 
-def _follow(system: System, state: State, leg: Leg, method: Method, place: Place) -> Followed:
+def _follow(system: System, state: State, leg: Leg, place: Place) -> Followed:
     """Follow a system along a leg, as far as it goes."""
+    integrator = place.inputs.integrator
     if not leg.length:
-        return Followed(_one_row(system, state, leg), method.integrator or TRY_OUT, {})
-    if method.integrator is None:
-        return _to_accuracy(system, state, leg, method, place)
-    _check_kinds(system, state, method.integrator)
+        return Followed(_one_row(system, state, leg), integrator or TRY_OUT, {})
+    if integrator is None:
+        return _to_accuracy(system, state, leg, place)
+    _check_kinds(system, state, integrator)
     compiling = "heyoka compiles the equations, once for all systems of one kind; it may take some seconds"
-    method.keeper.begin(place.number, leg, {})
-    with said_if_long(compiling, method.progress and isinstance(method.integrator, Taylor)):
-        run = _run(system, state, method.integrator, leg, method.events)
-    outcome = _gone(system, run, leg, method, place, (method.integrator, {}))
-    return Followed(outcome, method.integrator, {})
+    place.keeper.begin(place.number, leg, {})
+    with said_if_long(compiling, place.progress and isinstance(integrator, Taylor)):
+        run = _run(system, state, integrator, leg, place.inputs.events)
+    outcome = _gone(system, run, leg, place, (integrator, {}))
+    return Followed(outcome, integrator, {})
 
 
 def _gone(
-    system: System, run: streaming.Run, leg: Leg, method: Method, place: Place, how: tuple[Integrator, dict[str, Any]]
+    system: System, run: streaming.Run, leg: Leg, place: Place, how: tuple[Integrator, dict[str, Any]]
 ) -> Outcome:
     """Have a run followed as far as it goes, with a bar, and its rows kept."""
 
@@ -291,9 +261,9 @@ def _gone(
         under_way = _quietly(system, place.inputs, Followed(outcome, *how))
         return legs.joined([*place.runs, under_way], place.inputs.impulses)
 
-    method.keeper.report, method.keeper.refine = report, _refine
-    with bar(leg.whole, method.progress, leg.begin) as show:
-        return method.keeper.go(run, show)
+    place.keeper.report, place.keeper.refine = report, _refine
+    with bar(leg.whole, place.progress, leg.begin) as show:
+        return place.keeper.go(run, show)
 
 
 def _refine(run: streaming.Run) -> None:
@@ -313,25 +283,25 @@ def _interrupted(system: System, state: State, leg: Leg) -> Followed:
     return Followed(replace(_one_row(system, state, leg), status="interrupted", message=message), TRY_OUT, {})
 
 
-def _to_accuracy(system: System, state: State, leg: Leg, method: Method, place: Place) -> Followed:
+def _to_accuracy(system: System, state: State, leg: Leg, place: Place) -> Followed:
     """Follow a leg to an accuracy: plan, run, estimate, and again with a shorter step where it is not reached."""
-    asked, length = method.accuracy, leg.length
+    asked, length = place.inputs.accuracy, leg.length
     SteppedRun(system, state, TRY_OUT, schedule(leg, leg.whole), leg.begin)  # first says what is wrong with the start
     trials = Trials(system, state, leg.begin)
-    known = dict(method.keeper.planned(place.number))
+    known = dict(place.keeper.planned(place.number))
     first = known.pop("attempt", 0)
     longest = min(length / 4, leg.interval or length)
     plan = choosing.Plan(**{"floor": None} | known) if known else choosing.plan(trials, length, asked, longest)
     for attempt in range(first, ATTEMPTS):
-        method.keeper.begin(place.number, leg, plan._asdict() | {"attempt": attempt})
+        place.keeper.begin(place.number, leg, plan._asdict() | {"attempt": attempt})
         segments = schedule(leg, plan.integrator.step.value)
-        run = SteppedRun(system, state, plan.integrator, segments, leg.begin, method.events)
+        run = SteppedRun(system, state, plan.integrator, segments, leg.begin, place.inputs.events)
         about = {"accuracy": asked, "choice": plan.reason}
-        outcome = _gone(system, run, leg, method, place, (plan.integrator, about))
+        outcome = _gone(system, run, leg, place, (plan.integrator, about))
         if outcome.status != "completed":
             return Followed(outcome, plan.integrator, about)
         try:
-            with bar(leg.whole, method.progress, leg.begin) as trials.show:
+            with bar(leg.whole, place.progress, leg.begin) as trials.show:
                 found = choosing.estimate(trials, plan, outcome, asked)
         except KeyboardInterrupt:  # what has been computed is kept
             found = None
@@ -428,163 +398,4 @@ def _quietly(system: System, inputs: Inputs, followed: Followed) -> Trajectory:
     """Return what has been computed of a run that goes on: what is to be said of it is said at its end."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        return _trajectory(system, inputs.state, inputs.events, *followed)
-
-
-def _trajectory(
-    system: System,
-    state: State,
-    events: tuple[Event, ...],
-    outcome: Outcome,
-    integrator: Integrator,
-    asked: dict[str, Any],
-) -> Trajectory:
-    """Return what has been computed of a run from a state, and warn where it ended early or badly."""
-    if outcome.status in ("contact", "failed"):
-        warnings.warn(f"the run ended after {outcome.time[-1]:g} s: {outcome.message}", EndWarning, stacklevel=4)
-    figures = _figures(system, outcome)
-    of_total, of_potential = figures["max_relative_energy_error"], figures["max_energy_error_over_potential"]
-    error = min(of_total, of_potential)
-    if of_potential > 10 * DOUBTFUL_ENERGY_ERROR and of_total > 1e-6:  # large spins hide the orbit in the total
-        error = of_potential
-    if error > DOUBTFUL_ENERGY_ERROR:
-        cause = "its tolerances are too loose" if integrator.adaptive else f"a step of {outcome.step:g} s is too large"
-        warnings.warn(
-            f"the energy was wrong by {error:.2g} of its size at some step: {cause} for what happened, such as a "
-            "close approach",
-            StepWarning,
-            stacklevel=4,
-        )
-    figures["max_next_degree_term"] = _next_degree_term(system, outcome)
-    return Trajectory(
-        system=system,
-        integrator=integrator,
-        si=TrajectoryFloats(*(_in_memory(part) for part in (outcome.time, *outcome.motion))),
-        epoch=state.epoch,
-        frame=state.frame,
-        status=outcome.status,
-        message=outcome.message,
-        steps=outcome.steps,
-        step=quantity(outcome.step, "s"),
-        wall_time=quantity(outcome.wall_time, "s"),
-        watched=_watched(system, events, outcome),
-        occurrences=outcome.occurrences,
-        provenance=provenance() | ({"heyoka": version("heyoka")} if isinstance(integrator, Taylor) else {}),
-        **figures,
-        **asked,
-    )
-
-
-def _watched(system: System, events: tuple[Event, ...], outcome: Outcome) -> tuple[Event, ...]:
-    """Return what was looked for, and the contact that ended a run where it was none of that."""
-    indices = outcome.occurrences.event
-    if len(indices) and int(indices[-1]) >= len(events):
-        position, attitude = outcome.occurrences.position[-1:], outcome.occurrences.attitude[-1:]
-        pair = int(least_clearance(position[0], attitude[0], surfaces(system))[1])
-        events = (*events, Contact(tuple(system.names[i] for i in system.pairs[pair][:2])))
-    return events
-
-
-def _in_memory(rows: Any) -> Floats:
-    """Return rows, the last alone of those that are in a file."""
-    return rows if isinstance(rows, np.ndarray) else np.asarray(rows[len(rows) - 1 :])
-
-
-def _figures(system: System, outcome: Outcome) -> dict[str, Any]:
-    """Return the largest errors in the ways in which they are reported."""
-    watch = outcome.watch.array
-    energy_error = float(watch[loop.ENERGY_ERROR])
-    angular = float(np.linalg.norm(watch[loop.ANGULAR_MOMENTUM : loop.ANGULAR_MOMENTUM + 3]))
-    masses = np.array([body.si.mass * body.pulls for body in system.bodies])
-    velocity = outcome.motion.velocity
-    impulse = outcome.motion.impulse
-    first = np.einsum("i,nij->nj", masses, velocity[:1]) - impulse[:1]
-    of_rows = 0.0
-    for begin, end in pieces_of(len(velocity)):
-        linear = np.einsum("i,nij->nj", masses, velocity[begin:end]) - impulse[begin:end]
-        of_rows = max(of_rows, float(np.linalg.norm(linear - first, axis=1).max()))
-    speeds = masses @ np.linalg.norm(velocity[:1][0], axis=1)
-    return {
-        "max_relative_energy_error": _over(energy_error, abs(watch[loop.ENERGY])),
-        "max_energy_error": quantity(energy_error, "J"),
-        "max_energy_error_over_potential": _over(energy_error, abs(outcome.watch.potential_energy)),
-        "max_relative_angular_momentum_error": _over(float(watch[loop.ANGULAR_ERROR]), angular),
-        "max_relative_linear_momentum_error": _over(max(of_rows, float(watch[loop.LINEAR_ERROR])), speeds),
-        "max_rotation_error": float(watch[loop.ROTATION_ERROR]),
-        "closest_approach": quantity(float(watch[loop.CLOSEST]), "m"),
-        "closest_approach_time": quantity(outcome.closest_time, "s"),
-    }
-
-
-def _next_degree_term(system: System, outcome: Outcome) -> float | None:
-    """Return the largest size of the terms that gravity leaves out, and warn of a doubtful one; None without a cut."""
-    sizes: list[tuple[float, Pair]] = []
-    for pair in system.pairs:
-        primary, secondary = system.bodies[pair.primary], system.bodies[pair.secondary]
-        terms = pair.gravity.next_terms(secondary, primary, *_configurations(outcome, pair))
-        if terms is not None:
-            sizes.append((float(terms.max(initial=0.0)), pair))
-    if not sizes:
-        return None
-    size, pair = max(sizes, key=lambda item: item[0])
-    if size > DOUBTFUL_TERM:
-        warnings.warn(
-            f"{pair.gravity!r} between {system.names[pair.primary]} and {system.names[pair.secondary]} leaves out "
-            f"terms up to {size:.2g} of G m1 m2/r, and more of the torques: {_remedy(system, outcome, pair)}",
-            GravityWarning,
-            stacklevel=5,
-        )
-    return size
-
-
-def _remedy(system: System, outcome: Outcome, pair: Pair) -> str:
-    """Return what helps where gravity leaves out too much."""
-    closest = float(np.linalg.norm(_configurations(outcome, pair)[0], axis=1).min(initial=np.inf))
-    points = "take ba.PointPairs() of bodies filled with points, ba.mascons"
-    if closest < system.bodies[pair.primary].bounding_radius + system.bodies[pair.secondary].bounding_radius:
-        return f"at {closest:.4g} m spheres that hold the bodies meet, a higher degree need not be better: {points}"
-    if pair.gravity.cut_at == LARGEST_DEGREE:
-        return f"there is no higher degree: {points}"
-    return "take a higher degree of ba.Multipole"
-
-
-def _configurations(outcome: Outcome, pair: Pair) -> tuple[Floats, Floats]:
-    """Return X (N, 3) and R (N, 3, 3) of a pair, (34) and (35), at saved rows, that of its closest among them."""
-    one, two = pair.secondary, pair.primary
-    position, attitude = outcome.motion.position, outcome.motion.attitude
-    count, closest, row = len(position), np.inf, 0
-    for begin, end in pieces_of(count):
-        piece = position[begin:end]
-        distances = np.linalg.norm(piece[:, one] - piece[:, two], axis=1)
-        if distances.min() < closest:
-            closest, row = distances.min(), begin + int(np.argmin(distances))
-    rows = np.append(np.unique(np.linspace(0, count - 1, min(count, TERM_ROWS)).astype(int)), row)
-    places, turns = position[rows], attitude[rows]
-    apart = places[:, one] - places[:, two]
-    distinct = np.any(apart, axis=1)
-    to_primary = np.swapaxes(turns[distinct, two], -1, -2)
-    return np.einsum("nij,nj->ni", to_primary, apart[distinct]), to_primary @ turns[distinct, one]
-
-
-def _over(error: float, size: float) -> float:
-    """Return a relative error; the absolute one where there is nothing to compare it with."""
-    return float(error / size) if size > 0 else error
-
-
-def provenance() -> dict[str, str]:
-    """Return what is needed to repeat a run: versions, sources, machine, date, and G."""
-    return _origin() | {"date": datetime.now(UTC).isoformat(timespec="seconds")}
-
-
-@cache
-def _origin() -> dict[str, str]:
-    """Return what does not change in a process: looking it up takes longer than a short run."""
-    return {
-        "binaryast": constants.VERSION,
-        "kernels": source_hash(),
-        "python": platform.python_version(),
-        **{name: version(name) for name in ("numpy", "scipy", "numba", "astropy", "h5py")},
-        "machine": f"{platform.machine()} {platform.system()}",
-        "host": platform.node(),
-        "G": repr(constants.G),
-    }
+        return trajectory_of(system, inputs.state, inputs.events, *followed)

@@ -11,7 +11,8 @@ from binaryast import run_file, storage
 from binaryast.errors import InputError, ResumeWarning
 from binaryast.events import Event, checked
 from binaryast.gravity import PairPotential
-from binaryast.propagation import Inputs, follow, provenance
+from binaryast.propagation import Inputs, follow
+from binaryast.reporting import provenance
 from binaryast.run_file import RunFile
 from binaryast.storage import as_path
 from binaryast.streaming import Stream

@@ -16,8 +16,7 @@ from binaryast.schedule import Leg
 from binaryast.state import State
 from binaryast.trajectory import Trajectory
 from binaryast.units import brief, quantity
-
-GIVEN = ("work", "impulse", "angular_impulse")  # from outside, since the start
+from binaryast.working.base import GIVEN
 
 
 def retrace(run: Trajectory, time: Quantity, *, side: Literal["before", "after"] = "after") -> State | Trajectory:

@@ -33,10 +33,10 @@ from binaryast import blocks, storage
 from binaryast.blocks import Block, block
 from binaryast.errors import StorageError
 from binaryast.units import Floats, span
+from binaryast.working.base import GIVEN, Motion
 
 ROWS_AT_ONCE = 4096  # in memory
-GIVEN = ("work", "impulse", "angular_impulse")  # from outside, of a run with perturbations
-ROW_PARTS = ("time", "position", "velocity", "attitude", "spin", "potential_energy", *GIVEN)
+ROW_PARTS = ("time", *Motion._fields)  # those of GIVEN of a run with perturbations
 
 
 def pieces_of(rows: int) -> Iterator[tuple[int, int]]:

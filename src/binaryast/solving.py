@@ -8,6 +8,7 @@ import numpy as np
 from scipy import integrate
 
 from binaryast import equations
+from binaryast.arc_runs import ArcRun
 from binaryast.arcs import Arc, ArcLookout
 from binaryast.errors import InputError
 from binaryast.events import Event
@@ -16,8 +17,6 @@ from binaryast.outcome import (
     Happening,
     Outcome,
     Watch,
-    contact_message,
-    event_message,
     interruption_message,
     not_finite_message,
     occurrences,
@@ -33,12 +32,11 @@ from binaryast.working import Motion
 from binaryast.working.base import coinciding, nothing_given
 from binaryast.working.bodies import WorkingBodies
 
-CHECKPOINT = ("saved", "steps", "elapsed", "closest_time", "wall_time")
 OF_SOLVER = ("t", "y", "f", "h_abs")  # what the next step of SciPy's Runge-Kutta methods depends on
 NEVER_REJECT = 1e200  # a tolerance for fixed steps
 
 
-class SolvedRun:
+class SolvedRun(ArcRun):
     """One run under way."""
 
     def __init__(
@@ -56,14 +54,11 @@ class SolvedRun:
             self.times = row_times(leg)
         self.y = self.equations.from_state(_about(self.working.origin, state))
         self.start = self.y
-        self.rows, self.saved, self.taken = [self.y], 1, 0  # in memory; how many there are, and were taken
+        self._set_out(self.y, self.y)
         self.last_row = self.y
         self.solver: Any = None
         self.continued: dict[str, Any] = {}
         self.watch = Watch()
-        self.ended, self.message = "completed", ""
-        self.pressed: list[int] = []
-        self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
         self.lookout = ArcLookout(Watchlist(events, system, state), self.working.surfaces, leg.begin, self._put)
         if coincide := coinciding(system, state.si.position):
             raise overlap(system, coincide - 1, state.si.position)
@@ -150,11 +145,7 @@ class SolvedRun:
         self.steps += 1
         if self.saved < len(self.times) and self.times[self.saved] == end:
             self._save(y)
-        if walked.pair is not None:
-            self.ended, self.message = "contact", contact_message(self.system, walked.pair, self.begin + end)
-        if walked.event is not None:
-            self.ended = walked.event.status
-            self.message = event_message(walked.event, self.system, self.begin + end)
+        self._end_by(walked)
 
     def _look(self, when: float, y: Floats) -> None:
         """Take in what is measured; raise where it is not a number, or an attitude no rotation at all."""
@@ -179,41 +170,16 @@ class SolvedRun:
         self.rows, self.taken = [], self.saved
         return self.begin + times, motion
 
-    @property
-    def happened(self) -> list[Happening]:
-        """What has happened so far."""
-        return self.lookout.happened
-
-    @property
-    def pending(self) -> int:
-        """How many rows are in memory."""
-        return len(self.rows)
-
-    @property
-    def can_go_on(self) -> bool:
-        """Whether nothing has ended it but the end of its time, or Ctrl-C."""
-        return self.ended in ("completed", "interrupted")
-
     def checkpoint(self) -> dict[str, Any]:
         """Return what the rest of the run depends on, after `take_rows`: SciPy's solver between two of its steps."""
         under_way = self.solver is not None and self.solver.status == "running"
-        return {
-            "y": self.y,
-            "last_row": self.last_row,
-            "watch": self.watch.array.copy(),
-            "solver": {name: getattr(self.solver, name) for name in OF_SOLVER} if under_way else {},
-            "lookout": self.lookout.checkpoint(),
-            **{name: getattr(self, name) for name in CHECKPOINT},
-        }
+        solver = {name: getattr(self.solver, name) for name in OF_SOLVER} if under_way else {}
+        return super().checkpoint() | {"last_row": self.last_row, "solver": solver}
 
     def restore(self, checkpoint: dict[str, Any], happened: Sequence[Happening]) -> None:
         """Go on from a checkpoint of a run with the same beginning; the rows before it are not made again."""
-        self.y, self.last_row, self.continued = (checkpoint[name] for name in ("y", "last_row", "solver"))
-        self.watch.array[:] = checkpoint["watch"]
-        self.lookout.restore(checkpoint["lookout"], happened)
-        for name in CHECKPOINT:
-            setattr(self, name, checkpoint[name])
-        self.rows, self.taken = [], self.saved
+        super().restore(checkpoint, happened)
+        self.last_row, self.continued = checkpoint["last_row"], checkpoint["solver"]
 
     def outcome(self, rows: tuple[Floats, Motion] | None = None) -> Outcome:
         """Return what has been computed: the rows in memory, or those that were taken before."""

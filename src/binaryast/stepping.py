@@ -2,7 +2,6 @@
 
 import time
 from collections.abc import Callable, Sequence
-from math import inf, pi
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -27,6 +26,7 @@ from binaryast.outcome import (
     not_finite_message,
     occurrences,
     overlap,
+    turn_error,
 )
 from binaryast.perturbations.base import Span
 from binaryast.progress import keyboard
@@ -43,20 +43,6 @@ CHUNK_SECONDS = 0.1  # between two looks at the keyboard
 GROWTH, MOST_AT_ONCE = 8, 500_000  # of steps between two looks, whatever the clock says
 CHECKPOINT = ("segment", "kept", "elapsed", "steps", "closest_time", "energy_error", "wall_time")
 LOOKED_BACK = 2  # steps within which an event may be found that ends the run before them
-
-
-def turn_error(name: str, spin: float, integrator: Stepping, step: float) -> StepError:
-    """Return the error of a step that turns a body too far."""
-    turned = (
-        f"step: {name} spins at {spin:.6g} rad/s (once in {2 * pi / spin / 3600:.4g} h), h Omega = {step * spin:.4g}"
-    )
-    if integrator.largest_turn == inf:
-        return StepError(f"{turned}: more turns in a step of {step:g} s than can be followed: give a shorter one")
-    scheme = "" if integrator.order == 2 else f" at order {integrator.order} ({integrator.shares.name})"
-    return StepError(
-        f"{turned}; the implicit equation (128) has a solution only below {integrator.largest_turn:.4g}{scheme}: the "
-        f"step must be below {integrator.largest_turn / spin:.6g} s, got {step:g} s; ba.Splitting has no such limit"
-    )
 
 
 class Place(NamedTuple):

@@ -27,6 +27,7 @@ from binaryast.state import RelativeState, State
 from binaryast.system import System
 from binaryast.units import Floats, brief, numbers, quantity
 from binaryast.values import Value
+from binaryast.working.base import GIVEN
 
 FIGURES = {  # of the whole run, over every step; with their units
     "max_relative_energy_error": "",
@@ -47,7 +48,6 @@ DATASETS = (  # with a row for each time
     *("time", "position", "velocity", "attitude", "spin", "potential_energy"),
     *("energy", "linear_momentum", "angular_momentum", "rotation_error"),
 )
-GIVEN = ("work", "impulse", "angular_impulse")  # of a run with perturbations
 SOMETIMES = ("max_next_degree_term", "accuracy", "estimated_error")  # None of some runs, and in older files
 
 

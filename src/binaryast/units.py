@@ -163,6 +163,15 @@ def numbers(value: Any, name: str, shape: tuple[int, ...]) -> Floats:
     return checked(array, name, shape)
 
 
+def whole_number(value: Any, name: str, least: int, most: int | None = None) -> int:
+    """Return a whole number within bounds."""
+    within = isinstance(value, (int, np.integer)) and not isinstance(value, bool) and value >= least
+    if not within or (most is not None and value > most):
+        expected = f"{least} or more" if most is None else f"{least} to {most}"
+        raise InputError(f"{name}: expected a whole number, {expected}, got {brief(repr(value))}")
+    return int(value)
+
+
 def parse(text: str, name: str, example: str = "1 m") -> Quantity:
     """Return the quantity that a text such as ``"40 s"`` or ``"[1, 0, 0.3] m"`` says.
 

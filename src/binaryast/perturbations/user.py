@@ -3,16 +3,15 @@
 from abc import abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, TypeVar
+from typing import Any, ClassVar
 
 import numpy as np
 
 from binaryast.bodies import RigidBody
+from binaryast.compiling import Function, compiled
 from binaryast.errors import InputError
 from binaryast.perturbations.base import Perturbation, Span
 from binaryast.units import Floats, brief, numbers
-
-Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 class OfUser(Perturbation):
@@ -157,7 +156,7 @@ def force(function: Function) -> Function:
     InputError
         Where numba cannot compile it to that signature.
     """
-    return _compiled(function, Force.signature(), "force", "8 arguments, and nothing as the result")
+    return compiled(function, Force.signature(), "force", "8 arguments, and nothing as the result")
 
 
 def external_potential(function: Function) -> Function:
@@ -179,20 +178,4 @@ def external_potential(function: Function) -> Function:
     InputError
         Where numba cannot compile it to that signature.
     """
-    return _compiled(function, ExternalPotential.signature(), "external_potential", "6 arguments, and U and dU/dt")
-
-
-def _compiled(function: Function, signature: Any, name: str, expected: str) -> Function:
-    """Compile a user's function, or say in a line why it cannot be."""
-    from numba.core.errors import NumbaError
-
-    from binaryast.kernels.jit import compile_for_user
-
-    try:
-        return compile_for_user(function, signature)
-    except (NumbaError, TypeError) as error:
-        reason = next((line.strip() for line in str(error).splitlines()[1:] if line.strip()), brief(error))
-        raise InputError(
-            f"{name}: {getattr(function, '__name__', function)} cannot be compiled: {brief(reason)}; "
-            f"expected {expected}"
-        ) from None
+    return compiled(function, ExternalPotential.signature(), "external_potential", "6 arguments, and U and dU/dt")

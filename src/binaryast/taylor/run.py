@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from binaryast.arc_runs import ArcRun
 from binaryast.arcs import Arc, ArcLookout
 from binaryast.errors import InputError
 from binaryast.events import Event
@@ -17,8 +18,6 @@ from binaryast.outcome import (
     Happening,
     Outcome,
     Watch,
-    contact_message,
-    event_message,
     interruption_message,
     not_finite_message,
     occurrences,
@@ -36,11 +35,10 @@ from binaryast.working import Motion
 from binaryast.working.base import coinciding
 from binaryast.working.bodies import WorkingBodies
 
-CHECKPOINT = ("saved", "steps", "elapsed", "closest_time", "wall_time")
 SMALLEST_STEP = 1e-15  # over the time since the start: smaller ones lead nowhere
 
 
-class TaylorRun:
+class TaylorRun(ArcRun):
     """One run under way."""
 
     def __init__(
@@ -51,15 +49,11 @@ class TaylorRun:
         self.times = row_times(leg)
         self.working = WorkingBodies(system, state)
         self.watch = Watch()
-        self.ended, self.message = "completed", ""
-        self.pressed: list[int] = []
-        self.steps, self.elapsed, self.wall_time, self.closest_time = 0, 0.0, 0.0, 0.0
-        self.rows, self.saved, self.taken = [self._row()], 1, 0  # in memory; how many there are, and were taken
         self.formulas = Formulas(system, state, self.working)
+        self._set_out(self.formulas.start, self._row())
         self.lookout = ArcLookout(Watchlist(events, system, state), self.working.surfaces, leg.begin, self._see)
         self._begin(state)
         self.integrator = compiled.integrator(self.formulas, integrator.tolerance, compact=integrator.compact)
-        self.y = self.formulas.start
 
     def _row(self) -> Floats:
         return self.working.state[: self.working.row_size].copy()
@@ -116,11 +110,7 @@ class TaylorRun:
         if self.saved < len(self.times) and self.times[self.saved] == end:
             self._look(end, y)
             self._save()
-        if walked.pair is not None:
-            self.ended, self.message = "contact", contact_message(self.system, walked.pair, self.begin + end)
-        if walked.event is not None:
-            self.ended = walked.event.status
-            self.message = event_message(walked.event, self.system, self.begin + end)
+        self._end_by(walked)
 
     def _advance(self) -> float:
         """Have heyoka take a step, up to the end of the run; return the time that it reaches."""
@@ -174,42 +164,16 @@ class TaylorRun:
         self.rows, self.taken = [], self.saved
         return self.begin + times, self.working.from_rows(rows, times)
 
-    @property
-    def happened(self) -> list[Happening]:
-        """What has happened so far."""
-        return self.lookout.happened
-
-    @property
-    def pending(self) -> int:
-        """How many rows are in memory."""
-        return len(self.rows)
-
-    @property
-    def can_go_on(self) -> bool:
-        """Whether nothing has ended it but the end of its time, or Ctrl-C."""
-        return self.ended in ("completed", "interrupted")
-
     def checkpoint(self) -> dict[str, Any]:
         """Return what the rest of the run depends on, after `take_rows`: heyoka's variables and its time."""
-        return {
-            "y": self.y,
-            "state": self.integrator.state.copy(),
-            "time": np.array(self.integrator.dtime),
-            "watch": self.watch.array.copy(),
-            "lookout": self.lookout.checkpoint(),
-            **{name: getattr(self, name) for name in CHECKPOINT},
-        }
+        own = {"state": self.integrator.state.copy(), "time": np.array(self.integrator.dtime)}
+        return super().checkpoint() | own
 
     def restore(self, checkpoint: dict[str, Any], happened: Sequence[Happening]) -> None:
         """Go on from a checkpoint of a run with the same beginning; the rows before it are not made again."""
-        self.y = checkpoint["y"]
+        super().restore(checkpoint, happened)
         self.integrator.state[:] = checkpoint["state"]
         self.integrator.dtime = tuple(checkpoint["time"].tolist())
-        self.watch.array[:] = checkpoint["watch"]
-        self.lookout.restore(checkpoint["lookout"], happened)
-        for name in CHECKPOINT:
-            setattr(self, name, checkpoint[name])
-        self.rows, self.taken = [], self.saved
 
     def outcome(self, rows: tuple[Floats, Motion] | None = None) -> Outcome:
         """Return what has been computed: the rows in memory, or those that were taken before."""

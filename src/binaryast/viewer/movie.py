@@ -21,7 +21,7 @@ from binaryast.rows import rotations_of
 from binaryast.storage import as_path, refuse, replace_whole
 from binaryast.summaries import joined
 from binaryast.trajectory import Trajectory
-from binaryast.units import Floats, brief, quantity
+from binaryast.units import Floats, brief, quantity, whole_number
 from binaryast.viewer import frames
 from binaryast.viewer.conserved import kept
 from binaryast.viewer.facets import facets, seen
@@ -92,10 +92,7 @@ def animate(
     """
     if not isinstance(run, Trajectory):
         raise InputError(f"run: expected a ba.Trajectory, got {brief(run)}")
-    if isinstance(pictures, bool) or not isinstance(pictures, (int, np.integer)) or pictures < 1:
-        raise InputError(f"pictures: expected a whole number, 1 or more, got {brief(repr(pictures))}")
-    if isinstance(rate, bool) or not isinstance(rate, (int, np.integer)) or not 0 < rate <= FASTEST:
-        raise InputError(f"rate: expected a whole number of pictures a second, 1 to {FASTEST}, got {brief(repr(rate))}")
+    pictures, rate = whole_number(pictures, "pictures", 1), whole_number(rate, "rate", 1, FASTEST)
     if axes not in AXES:
         raise InputError(f"axes: expected 'inertial' or 'line', got {brief(repr(axes))}")
     path = as_path(path)
@@ -103,13 +100,13 @@ def animate(
         raise InputError(f"{path}: expected a name that ends in .gif or .mp4")
     refuse(path, force=force)
     program = _ffmpeg() if path.suffix.lower() == ".mp4" else ""
-    count = 1 if len(run) == 1 else int(pictures)
+    count = 1 if len(run) == 1 else pictures
     figure = Figure(figsize=SIZE, facecolor=GROUND)
     draw: Any = Film(run, figure, count, axes).draw
     movie = animation.FuncAnimation(figure, draw, frames=count, init_func=tuple, blit=False)
     with tempfile.TemporaryDirectory() as folder, rc_context({"animation.ffmpeg_path": program or "ffmpeg"}):
         whole = Path(folder) / f"movie{path.suffix.lower()}"
-        writer = animation.FFMpegWriter(fps=int(rate)) if program else animation.PillowWriter(fps=int(rate))
+        writer = animation.FFMpegWriter(fps=rate) if program else animation.PillowWriter(fps=rate)
         movie.save(whole, writer=writer, dpi=100, savefig_kwargs={"facecolor": GROUND})
         return replace_whole(path, whole.read_bytes(), force=force)
 

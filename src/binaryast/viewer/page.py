@@ -15,7 +15,7 @@ from binaryast.errors import InputError
 from binaryast.storage import as_path, refuse, replace_whole
 from binaryast.summaries import joined
 from binaryast.trajectory import Trajectory
-from binaryast.units import Floats, brief
+from binaryast.units import Floats, brief, whole_number
 from binaryast.viewer import frames, threejs
 from binaryast.viewer.conserved import kept
 from binaryast.viewer.packing import packed
@@ -68,13 +68,12 @@ def view(run: Trajectory, path: str | Path, *, rows: int = 10_000, force: bool =
     """
     if not isinstance(run, Trajectory):
         raise InputError(f"run: expected a ba.Trajectory, got {brief(run)}")
-    if isinstance(rows, bool) or not isinstance(rows, (int, np.integer)) or rows < 1:
-        raise InputError(f"rows: expected a whole number, 1 or more, got {brief(repr(rows))}")
+    rows = whole_number(rows, "rows", 1)
     path = as_path(path)
     if path.suffix.lower() not in SUFFIXES:
         raise InputError(f"{path}: expected a name that ends in .html")
     refuse(path, force=force)
-    return replace_whole(path, page(run, int(rows)).encode(), force=force)
+    return replace_whole(path, page(run, rows).encode(), force=force)
 
 
 def page(run: Trajectory, rows: int = 10_000) -> str:

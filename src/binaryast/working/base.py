@@ -35,6 +35,9 @@ class Motion(NamedTuple):
     angular_impulse: Floats
 
 
+GIVEN = Motion._fields[-3:]
+
+
 def nothing_given(count: int) -> dict[str, Floats]:
     """Return what was given from outside where there is nothing: arrays of zeros that take no room, to be read only."""
     shapes = {"work": (count,), "impulse": (count, 3), "angular_impulse": (count, 3)}
